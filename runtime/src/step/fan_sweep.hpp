@@ -118,7 +118,7 @@ class FanSweep : public NodeEntry<Geometry> {
     if (!spans_arc(fan, busy.corner, &arc)) return;
     const uint32_t before = best_.node;
     search_fan(busy, arc);
-    if (passes_corner_ && best_.node != before) best_.feature = {FDCG_VERTEX, busy.corner};
+    if (sizeof(Real) < sizeof(double) && passes_corner_ && best_.node != before) best_.feature = {FDCG_VERTEX, busy.corner};
   }
 
   // False: no face of the fan is to be asked.
@@ -176,7 +176,8 @@ class FanSweep : public NodeEntry<Geometry> {
     const Vec3<double> point = widen(graph_.corner_point(corner));
     const bool is_inexact = (fan.flags & FDCG_RUN_INEXACT) != 0;
     if (!(off <= at_corner_rounding<Real>(point, extent) + (is_inexact ? deviation : 0) && at >= 0 && at < 1)) return false;
-    passes_corner_ = !graph_.has_inexact_nodes() && off > at_corner_rounding<double>(point, extent);
+    passes_corner_ =
+        sizeof(Real) < sizeof(double) && !graph_.has_inexact_nodes() && off > at_corner_rounding<double>(point, extent);
     if (passes_corner_) return false;
     const auto fraction = static_cast<Real>(at);
     if (!is_before_best(fraction, fan.first_node)) return true;

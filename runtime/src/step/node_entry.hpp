@@ -318,16 +318,23 @@ class NodeEntry {
 
   // Whether a way that crosses the node's plane at `fraction`, just outside of this side by its orientation, may pass inside
   // all the same, where corners lie off their planes. Of a concave side where the way stays in front of the wall that stands
-  // there: a way along the groove would pass between the two. Of any other where the loop as it is, sides in line that bend
-  // inwards up to rounding error included, winds about the way: that is still to be asked, once for all sides.
+  // there: a way along the groove would pass between the two. Of a convex side where the way begins behind the slab of the face
+  // across, which it therefore does not enter, and meets this plane behind that one's: it would pass between the two. Of any
+  // other where the loop as it is, sides in line that bend inwards up to rounding error included, winds about the way: that is
+  // still to be asked, once for all sides.
   [[nodiscard, gnu::noinline, gnu::cold]] bool is_open(NodeRef<Geometry> node, uint32_t k, Real fraction,
                                                        bool* must_wind) const {
     if (!graph_.has_inexact_nodes()) return false;
     spend(work_left_, kNodeWork);
-    const bool is_near = node.voronoi_plane(k).distance(point_at(fraction)) <= slab_;
-    if (is_near && graph_.connection(node.connection(k)).type() == FDCG_CONCAVE) {
+    const Vec3<Real> point = point_at(fraction);
+    const bool is_near = node.voronoi_plane(k).distance(point) <= slab_;
+    const uint32_t type = graph_.connection(node.connection(k)).type();
+    if (is_near && (type == FDCG_CONCAVE || type == FDCG_CONVEX)) {
       const NodeRef<Geometry> wall = graph_.node(node.across(k));
-      if (wall.is_inexact() && wall.plane().distance(from_) >= -slab_ && wall.plane().distance(to_) >= 0) return true;
+      const bool begins_in_slab = wall.plane().distance(from_) >= -slab_;
+      if (type == FDCG_CONVEX ? !begins_in_slab && wall.plane().distance(point) < 0
+                              : wall.is_inexact() && begins_in_slab && wall.plane().distance(to_) >= 0)
+        return true;
     }
     *must_wind = true;
     return is_near && node.is_inexact();
