@@ -36,11 +36,13 @@ template <class Geometry, class Real = typename Geometry::Real>
   if (!(absolute(s.side[0]) > bound && absolute(s.side[1]) > bound)) return OnEdge::unsure;
   const bool is_behind_a = s.side[0] < 0, is_behind_b = s.side[1] < 0;
   const uint8_t type = graph.type_of(connection);
-  if (graph.has_inexact_nodes() ? lets_go(graph, bound, type, s) : is_free_of_edge(type, is_behind_a, is_behind_b))
+  if ((graph.has_inexact_nodes() ? lets_go(graph, bound, type, s) : is_free_of_edge(type, is_behind_a, is_behind_b)) &&
+      !FDCG_MUTANT("edge-way-never-free"))
     return OnEdge::unsure;
   const bool does_a_pull = is_behind_a && s.voronoi[0] < 0, does_b_pull = is_behind_b && s.voronoi[1] < 0;
-  if (does_a_pull || does_b_pull) {
+  if ((does_a_pull || does_b_pull) && !FDCG_MUTANT("edge-way-never-left")) {
     along->face = does_a_pull && !(does_b_pull && s.voronoi[1] < s.voronoi[0]) ? connection.node : first.across;
+    if (FDCG_MUTANT("edge-way-wrong-face")) along->face = along->face == connection.node ? first.across : connection.node;
     return OnEdge::pulled;
   }
 
@@ -52,10 +54,12 @@ template <class Geometry, class Real = typename Geometry::Real>
   const bool is_smooth = friction.mu_static == 0 && friction.mu_dynamic == 0;
   const Real load = is_smooth ? Real(0) : edge_load(friction.has_wedge, a, b, hip - (start + direction * foot));
   const Slip<Real> slip = friction.slip(along->god_object, square(ahead), load);
-  const Real u = slip.is_rest ? foot + ahead : ahead > 0 ? foot + slip.gap : foot - slip.gap;
+  const Real u = slip.is_rest                                         ? foot + ahead
+                 : (ahead > 0) != FDCG_MUTANT("edge-way-slides-past") ? foot + slip.gap
+                                                                      : foot - slip.gap;
   const Real end_tolerance = end_rounding(start, edge.length);
   if (!(u > end_tolerance && edge.length - u > end_tolerance)) return OnEdge::unsure;
-  const Vec3<Real> stands = slip.is_rest ? along->god_object : start + direction * u;
+  const Vec3<Real> stands = slip.is_rest || FDCG_MUTANT("edge-way-stays") ? along->god_object : start + direction * u;
   if (!is_usable(stands)) return OnEdge::unsure;
   along->god_object = by_parts(stands);
   along->friction = friction;
