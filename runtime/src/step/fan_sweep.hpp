@@ -79,8 +79,9 @@ class FanSweep : public NodeEntry<Geometry> {
     Vec3<Real> start, end;
     Vec3<Real> normal, after_start, before_end;  // of the circle's plane, and of those across it at the arc's ends
     Real slack, padding;
-    Real around_start;            // negative: no wall there holds
-    Real start_share, end_share;  // of the distances of the way's start and end from the corner
+    Real around_start;               // negative: no wall there holds
+    Real start_share, end_share;     // of the distances of the way's start and end from the corner
+    Vec3<Real> outward = {0, 0, 0};  // of a face that is left there: what is behind it is not met
   };
 
   static constexpr uint32_t kFewFans = 3;
@@ -157,15 +158,16 @@ class FanSweep : public NodeEntry<Geometry> {
     arc->padding = dot(start, end) > 0 ? beside + static_cast<Real>(bulge) : kAnywhere;
     arc->start_share = static_cast<Real>(length_a / (length_a + length_b));
     arc->end_share = static_cast<Real>(length_b / (length_a + length_b));
+    if (!is_inexact) Entry::find_outward_of_left(corner, &arc->outward);
     return true;
   }
   static Vec3<Real> narrowed(Vec3<double> v) {
     return {static_cast<Real>(v.x), static_cast<Real>(v.y), static_cast<Real>(v.z)};
   }
 
-  // The angle under which something is seen from a distance, or more.
+  // The angle under which something is seen from a distance, or more: asin x is below 1.0625 x up to a half.
   static Real seen(Real size, Real distance) {
-    return distance > 2 * size ? 2 * size / distance : size > 0 ? kAnywhere : Real(0);
+    return distance > 2 * size ? Real(1.0625) * size / distance : size > 0 ? kAnywhere : Real(0);
   }
 
   // contact-model FREE-8: a way that passes the corner within rounding meets it, and not one of thousands of faces there whose
@@ -187,15 +189,21 @@ class FanSweep : public NodeEntry<Geometry> {
     return true;
   }
 
+  // How far a box reaches from its centre in a direction.
+  template <class FanBox>
+  [[nodiscard, gnu::noinline, gnu::cold]] static Real reach(const FanBox& box, const Vec3<Real>& direction) {
+    Real sum = 0;
+    for (const auto& axis : box.axis)
+      sum += absolute(dot(direction, vec(axis)));
+    return sum;
+  }
+
   static constexpr Real kPassedBy = 3;
   // The fraction of the way at which it may enter a face in the box, or less; kPassedBy: none.
   template <class FanBox>
   [[nodiscard]] Real entry_of(const FanBox& box, const Arc& arc) const {
     spend(work_left_, kArcBoxWork);
     const Vec3<Real> centre = vec(box.centre), start = arc.start - centre, end = arc.end - centre;
-    Real off = absolute(dot(arc.normal, centre)) - arc.slack;
-    Real after = dot(arc.after_start, centre) - arc.slack, most_after = after + 2 * arc.slack;
-    Real before = dot(arc.before_end, centre) + arc.slack;
     bool is_at_start = arc.around_start >= 0, is_beside = false;
     for (const auto& stored : box.axis) {
       const Vec3<Real> axis = vec(stored);
@@ -204,14 +212,14 @@ class FanSweep : public NodeEntry<Geometry> {
       is_at_start = is_at_start && absolute(from) <= length2 + arc.around_start * size;
       is_beside = is_beside || (from < to ? from : to) > half || (from < to ? to : from) < -half;
       if (is_beside && !is_at_start) return kPassedBy;
-      const Real spread = absolute(dot(arc.after_start, axis));
-      off -= absolute(dot(arc.normal, axis));
-      after -= spread;
-      most_after += spread;
-      before += absolute(dot(arc.before_end, axis));
     }
+    if (dot(arc.outward, centre) + reach(box, arc.outward) < -kDirectionRounding<Real>) return kPassedBy;
     if (is_at_start) return 0;
-    if (off > 0 || most_after < 0 || before < 0) return kPassedBy;
+    if (absolute(dot(arc.normal, centre)) - reach(box, arc.normal) > arc.slack) return kPassedBy;
+    const Real middle = dot(arc.after_start, centre), spread = reach(box, arc.after_start) + arc.slack;
+    const Real before = dot(arc.before_end, centre) + reach(box, arc.before_end) + arc.slack;
+    if (middle + spread < 0 || before < 0) return kPassedBy;
+    const Real after = middle - spread;
     if (!(after > 0)) return 0;
     // Where the way has the direction p start + q end it is at q / (p + q).
     const Real q = arc.start_share * after, p = arc.end_share * before;

@@ -47,7 +47,8 @@ template <class Geometry, class Real = typename Geometry::Real>
   FirstHit<Real> first = {Real(carried->fraction), carried->node, {carried->state, carried->feature}};
   Sweep<Geometry> sweep(walk.graph, walk.god_object, walk.god_object, to, {carried->left_state, carried->left_feature},
                         work_left);
-  const bool is_done = sweep.run_in_order(&first, &carried->next_leaf);
+  // Nearest boxes first once more, with the work of a whole tick: in order fans are looked at node by node.
+  const bool is_done = (carried->next_leaf == 0 && sweep.run(&first)) || sweep.run_in_order(&first, &carried->next_leaf);
   carried->fraction = first.fraction;
   carried->node = first.node;
   carried->state = first.feature.state;
@@ -147,9 +148,9 @@ template <class Geometry, class Real = typename Geometry::Real>
   walk.god_object = from;
   Sweep<Geometry> sweep(walk.graph, left == kFree ? from : stood, from, to, left, &space->work_left);
   FirstHit<Real> first;
-  // A way that leaves a feature begins beside its neighbours, and the tick may have swept before: the rules lend it half of
-  // what they have left, and get back what it does not need (contact-model BOUND-2).
-  const uint32_t lent = left == kFree ? 0 : walk.work_left / 2;
+  // A way that leaves a feature begins beside its neighbours, and one past a busy corner may graze dozens of faces: the rules
+  // lend it half of what they have left, and get back what it does not need (contact-model BOUND-2).
+  const uint32_t lent = walk.work_left / 2;
   space->work_left += lent;
   const bool is_done = sweep.run(&first);
   const uint32_t unspent = lent < space->work_left ? lent : space->work_left;

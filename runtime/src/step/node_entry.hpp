@@ -90,6 +90,21 @@ class NodeEntry {
   Real slab_;
   FirstHit<Real> best_;
 
+  // Outward of the face that the way leaves, or of that face at the edge which it is in front of since LEAVE-2, if the corner
+  // is one of its own: the way meets nothing behind that. Else not set.
+  [[gnu::noinline, gnu::cold]] void find_outward_of_left(uint32_t corner, Vec3<Real>* outward) const {
+    const bool is_edge = left_.state == FDCG_EDGE;
+    uint32_t n = left_.state == FDCG_FACE ? left_.index : FDCG_NONE;
+    for (uint32_t k = 0; k < 2; ++k) {
+      if (is_edge) n = graph_.connection(left_.index).node(k);
+      if (n == FDCG_NONE) return;
+      const NodeRef<Geometry> face = graph_.node(n);
+      if (!(side(face, to_, to_bound_) >= 0)) continue;
+      if (has_corner(face, corner)) *outward = face.normal();
+      return;
+    }
+  }
+
  private:
   static constexpr uint32_t kLastBit = 63;
 
@@ -133,6 +148,8 @@ class NodeEntry {
     const bool is_grazing = noise > kGrazing<Real> * fall;
     const Real least = !is_grazing ? rounded : start_side > noise ? (start_side - noise) / fall : Real(0);
     if (!is_before_best(least, n)) return;
+    const Real fraction = is_grazing ? part_over(n, rounded, least) : rounded;  // costs less than what follows
+    if (!is_before_best(fraction, n)) return;
     uint64_t met_exactly = 0;
     if (!passes_inside(node, rounded, &met_exactly)) {
       // Along a node, in its slab: seen edge-on its loop is a line, which the way may pass on either side.
@@ -144,9 +161,7 @@ class NodeEntry {
       if (!clip_to(node, 0, &begin, &end)) return;
       met_exactly = 0;
     }
-    const Real fraction = is_grazing ? part_over(n, rounded, least) : rounded;
     if (FDCG_MUTANT("distance-tolerance") && left_.state != FDCG_FREE && fraction < Real(1e-4)) return;
-    if (!is_before_best(fraction, n)) return;
     best_.fraction = fraction;
     best_.node = n;
     best_.feature = {FDCG_FACE, n};
@@ -174,9 +189,11 @@ class NodeEntry {
       const ConnectionRef<Geometry> connection = graph_.connection(left_.index);
       return connection.node(0) == n || connection.node(1) == n;
     }
-    if (left_.state != FDCG_VERTEX) return false;
+    return left_.state == FDCG_VERTEX && has_corner(node, left_.index);
+  }
+  [[nodiscard]] static bool has_corner(NodeRef<Geometry> node, uint32_t corner) {
     for (uint32_t k = 0; k < node.side_count(); ++k) {
-      if (node.corner(k) == left_.index) return true;
+      if (node.corner(k) == corner) return true;
     }
     return false;
   }
@@ -200,26 +217,24 @@ class NodeEntry {
       if (off > side_rounding(from_bound_, Real(0))) return;
       if (off > 0 && (beside.distance(to_) > off || !is_between_ends(node, k, from_))) return;
     }
-    if (!was_before_clearing(node) && !faces_what_was_left(node)) return;
+    if (!faces_what_was_left(node)) return;
     best_.fraction = 0;
     best_.node = n;
     best_.feature = {FDCG_FACE, n};
   }
 
-  // Whether it was the step clear of the face that is left which took the way's beginning behind the node.
-  [[nodiscard]] bool was_before_clearing(NodeRef<Geometry> node) const {
-    if (left_.state != FDCG_FACE || !(dot(graph_.node(left_.index).normal(), node.normal()) < 0)) return false;
-    return side(node, stood_, from_bound_) >= 0;
-  }
-
-  // Whether the face or edge that the way leaves and the node are opposite each other, tested corner by corner. If the face or
-  // edge lies in front of the node, the god-object did, whatever its rounded place. The node is met only if it reaches in front
-  // of the faces that the way does not enter.
+  // Whether the face or edge that the way leaves and the node are opposite each other, tested corner by corner: then the
+  // god-object was in front of the node, whatever its rounded place. So it was if the step clear of the face took the way's
+  // beginning behind it. The node is met only if it reaches in front of the faces that the way does not enter.
   [[nodiscard]] bool faces_what_was_left(NodeRef<Geometry> node) const {
     if (left_.state == FDCG_FACE) {
       const NodeRef<Geometry> face = graph_.node(left_.index);
-      const bool is_opposite = dot(face.normal(), node.normal()) < 0;  // then rounding of a wall's plane does not matter
-      return reaches(face, node, 1, Real(0)) && !reaches(node, face, -1, is_opposite ? from_bound_ : Real(0));
+      const bool is_opposite = dot(face.normal(), node.normal()) < 0;
+      const bool was_before = is_opposite && side(node, stood_, from_bound_) >= 0;
+      if (reaches(face, node, 1, was_before ? from_bound_ - slab_ : Real(0)) == was_before) return was_before;
+      // Now of a wall all in one plane with the face, or, opposite it, whose plane's rounding does not matter.
+      return !reaches(was_before ? face : node, was_before ? node : face, -1,
+                      is_opposite && !was_before ? from_bound_ : Real(0));
     }
     if (left_.state != FDCG_EDGE) return false;  // at a corner its place is exact
     const ConnectionRef<Geometry> connection = graph_.connection(left_.index);

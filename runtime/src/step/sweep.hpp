@@ -3,8 +3,9 @@
 // another meets first.
 //
 // A sweep looks at the nearest boxes first. Where its work runs out (work.hpp, free_space.hpp) it is carried over to later
-// ticks, which look at the leaves in index order instead: one number then says how far they have come, and each tick gets on by
-// at least one box. A carried sweep takes at most 1 + (boxes and nodes that the way touches) / (work of a tick) ticks.
+// ticks, which, after one more such look, go through the leaves in index order instead: one number then says how far they have
+// come, and each tick gets on by at least one box. A carried sweep takes at most 2 + (boxes and nodes that the way touches) /
+// (work of a tick) ticks.
 #pragma once
 
 #include "graph/box_tree.hpp"
@@ -23,7 +24,7 @@ class Sweep : public FanSweep<Geometry> {
   using Fans::Fans;
 
   // Nearest boxes first. False: the work ran out; what was met so far stands.
-  bool run(FirstHit<Real>* first) {
+  [[gnu::noinline]] bool run(FirstHit<Real>* first) {
     best_ = *first;
     const bool is_done = graph_.hierarchy() != nullptr && search();
     *first = best_;
