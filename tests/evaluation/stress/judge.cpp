@@ -394,7 +394,10 @@ void Judge::look_inside(Tick& tick, Verdicts& v) {
   if (is_let_off(tick.god_object)) return;
   const InsideGrid::Where where = specimen_.inside->where(tick.god_object);  // the HIP, or how far a carried sweep has come
   is_outside_ = where == InsideGrid::Where::outside;
-  if (is_outside_) is_known_outside_ = true;
+  // A contact that begins nearer to the mesh than merging moved the graph's surface may begin inside of the graph (TICK-3).
+  if (is_outside_ && !is_known_outside_)
+    is_known_outside_ =
+        specimen_.stated_deviation == 0 || !specimen_.inside->comes_near(tick.god_object, tick.god_object, moved_);
   if (where != InsideGrid::Where::inside || !is_known_outside_) return;
   const bool is_on_its_way = (tick.result.flags & FDCG_RESULT_SWEEP_BOUND) != 0;  // may start on the surface
   is_known_outside_ = is_on_its_way;                                              // once is enough
