@@ -84,6 +84,13 @@ inline Real side_rounding(Real from_bound, Real to_bound) {
   return (from_bound + to_bound) / 4;
 }
 
+// FREE-3: a way that is all beyond a side's Voronoi plane by more passes outside of the side's edge: the rounding of both
+// planes and of the place where it comes in, `bound`; where it may begin in a slab, behind the plane, it came in as far before.
+template <class Real>
+inline Real beside_rounding(Real bound, bool is_slab) {
+  return bound * (is_slab ? 1 / kGrazing<Real> : Real(2));
+}
+
 // The sweep's orientations, before they are asked exactly: of each of the six products of three differences, three differences,
 // two products and the sums, half an epsilon each.
 template <class Real>

@@ -2,7 +2,8 @@
 // A sweep past a busy corner (contact-model FREE-8; docs/internals/sweep.md). The boxes of the faces there all hold the corner,
 // so a way past it touches them all. The file puts these faces next to one another (format.h, fdcg_fan_run), and the sweep asks
 // the corner's tree of directions instead: seen from the corner a way is an arc of a great circle, and a face is met only where
-// that arc passes its directions. Cost: a few boxes a level for each face of the fan that the arc passes.
+// that arc passes its directions. Cost: a few boxes a level for each face of the fan that the arc passes. A short way far from
+// the corner mostly touches few boxes, though, and a few nodes are looked at first (kFarNodes).
 #pragma once
 
 #include "graph/implicit_tree.hpp"
@@ -54,14 +55,16 @@ class FanSweep : public NodeEntry<Geometry> {
       uint32_t run = run_of(static_cast<uint32_t>(first));
       const uint32_t last = last_run(run, end);
       if (last == FDCG_NONE || (level > 0 && last > run)) return false;
-      for (; run <= last; ++run)
+      for (; run <= last; ++run) {
+        if (is_by_nodes(run)) return false;
         look_at_fan(run);
+      }
       return true;
     }
     spend(work_left_, kLeafWork);
     for (auto n = static_cast<uint32_t>(first); n < end; ++n) {
       const uint32_t run = run_of(n);
-      if (run == FDCG_NONE) {
+      if (run == FDCG_NONE || is_by_nodes(run)) {
         glance_at_node(n);
       } else {
         look_at_fan(run);
@@ -85,8 +88,11 @@ class FanSweep : public NodeEntry<Geometry> {
   };
 
   static constexpr uint32_t kFewFans = 3;
-  static constexpr uint32_t kRemembered = 8;  // fans; one that is forgotten is looked at again
-  static constexpr Real kAnywhere = 4;        // a slack that every direction is within
+  static constexpr uint32_t kRemembered = 8;     // fans; one that is forgotten is looked at again
+  static constexpr uint32_t kFarNodes = 20;      // a sweep looks at, before it asks a far corner's tree
+  static constexpr uint32_t kPassingWork = 600;  // of a way within rounding of a corner, for its faces there
+  static constexpr Real kFarWays = 32;           // a corner is far that is as many ways away
+  static constexpr Real kAnywhere = 4;           // a slack that every direction is within
 
   [[nodiscard]] uint32_t run_of(uint32_t n) const { return fan_run_of(graph_, n); }
 
@@ -106,6 +112,16 @@ class FanSweep : public NodeEntry<Geometry> {
     return FDCG_NONE;
   }
 
+  // Whether a fan is looked at node by node for now, as any faces are: far from the corner, of a plate's needles say, the way
+  // touches few boxes, and what it meets is mostly in the first.
+  [[nodiscard, gnu::noinline, gnu::cold]] bool is_by_nodes(uint32_t run) {
+    if (far_nodes_left_ == 0) return false;
+    const Vec3<Real> corner = graph_.corner_point(graph_.busy_corners()[graph_.fan_runs()[run].busy].corner);
+    if (!(norm1(corner - from_) > kFarWays * norm1(way_))) return false;
+    --far_nodes_left_;
+    return true;
+  }
+
   [[gnu::noinline, gnu::cold]] void look_at_fan(uint32_t run) {
     for (uint32_t i = 0; i < kRemembered && i < looked_at_; ++i) {
       if (fans_[i] == run) return;
@@ -117,9 +133,29 @@ class FanSweep : public NodeEntry<Geometry> {
     Arc arc;
     passes_corner_ = false;
     if (!spans_arc(fan, busy.corner, &arc)) return;
-    const uint32_t before = best_.node;
+    if (sizeof(Real) < sizeof(double) && passes_corner_) {
+      pass_corner(fan, busy, arc);
+    } else {
+      search_fan(busy, arc);
+    }
+  }
+
+  // A way within rounding of a corner: it is met where the way enters one of its faces, or where a part of the work does not
+  // tell, thousands of faces being within rounding: a hand inside is to feel it in this tick.
+  [[gnu::noinline, gnu::cold]] void pass_corner(const fdcg_fan_run& fan, const fdcg_busy_corner& busy, const Arc& arc) {
+    uint32_t* const all_left = work_left_;
+    const uint32_t lent = *all_left < kPassingWork ? *all_left : kPassingWork, before = best_.node;
+    uint32_t left = lent;
+    work_left_ = &left;
     search_fan(busy, arc);
-    if (sizeof(Real) < sizeof(double) && passes_corner_ && best_.node != before) best_.feature = {FDCG_VERTEX, busy.corner};
+    work_left_ = all_left;
+    spend(all_left, lent - left);
+    if (best_.node != before) {
+      best_.feature = {FDCG_VERTEX, busy.corner};
+    } else if (is_cut_short_) {
+      meet_corner(fan, busy.corner);
+    }
+    is_cut_short_ = false;
   }
 
   // False: no face of the fan is to be asked.
@@ -180,13 +216,13 @@ class FanSweep : public NodeEntry<Geometry> {
     if (!(off <= at_corner_rounding<Real>(point, extent) + (is_inexact ? deviation : 0) && at >= 0 && at < 1)) return false;
     passes_corner_ =
         sizeof(Real) < sizeof(double) && !graph_.has_inexact_nodes() && off > at_corner_rounding<double>(point, extent);
-    if (passes_corner_) return false;
-    const auto fraction = static_cast<Real>(at);
-    if (!is_before_best(fraction, fan.first_node)) return true;
-    best_.fraction = fraction;
-    best_.node = fan.first_node;
-    best_.feature = {FDCG_VERTEX, corner};
-    return true;
+    corner_fraction_ = static_cast<Real>(at);
+    if (!passes_corner_) meet_corner(fan, corner);
+    return !passes_corner_;
+  }
+
+  void meet_corner(const fdcg_fan_run& fan, uint32_t corner) {
+    if (is_before_best(corner_fraction_, fan.first_node)) best_ = {corner_fraction_, fan.first_node, {FDCG_VERTEX, corner}};
   }
 
   // How far a box reaches from its centre in a direction.
@@ -202,8 +238,12 @@ class FanSweep : public NodeEntry<Geometry> {
   // The fraction of the way at which it may enter a face in the box, or less; kPassedBy: none.
   template <class FanBox>
   [[nodiscard]] Real entry_of(const FanBox& box, const Arc& arc) const {
+    spend(work_left_, kArcPlaneWork);
+    const Vec3<Real> centre = vec(box.centre);
+    const bool is_off_plane = absolute(dot(arc.normal, centre)) - reach(box, arc.normal) > arc.slack;
+    if (is_off_plane && !(arc.around_start >= 0)) return kPassedBy;
     spend(work_left_, kArcBoxWork);
-    const Vec3<Real> centre = vec(box.centre), start = arc.start - centre, end = arc.end - centre;
+    const Vec3<Real> start = arc.start - centre, end = arc.end - centre;
     bool is_at_start = arc.around_start >= 0, is_beside = false;
     for (const auto& stored : box.axis) {
       const Vec3<Real> axis = vec(stored);
@@ -215,7 +255,7 @@ class FanSweep : public NodeEntry<Geometry> {
     }
     if (dot(arc.outward, centre) + reach(box, arc.outward) < -kDirectionRounding<Real>) return kPassedBy;
     if (is_at_start) return 0;
-    if (absolute(dot(arc.normal, centre)) - reach(box, arc.normal) > arc.slack) return kPassedBy;
+    if (is_off_plane) return kPassedBy;
     const Real middle = dot(arc.after_start, centre), spread = reach(box, arc.after_start) + arc.slack;
     const Real before = dot(arc.before_end, centre) + reach(box, arc.before_end) + arc.slack;
     if (middle + spread < 0 || before < 0) return kPassedBy;
@@ -271,9 +311,10 @@ class FanSweep : public NodeEntry<Geometry> {
   }
 
   uint32_t fans_[kRemembered];
-  uint32_t looked_at_ = 0;
+  uint32_t looked_at_ = 0, far_nodes_left_ = kFarNodes;
   bool is_cut_short_ = false;
-  bool passes_corner_ = false;  // the fan's that is looked at
+  bool passes_corner_ = false;  // the fan's that is looked at, at corner_fraction_
+  Real corner_fraction_ = 0;
 };
 
 }  // namespace fdcg

@@ -71,7 +71,7 @@ class NodeEntry {
   // Of most nodes the way ends in front, or begins behind, by more than rounding could change: those need no call.
   void glance_at_node(uint32_t n) {
     if (surely_passes(graph_.node(n).plane(), from_, to_, to_bound_, slab_)) {
-      spend(work_left_, kNodeWork);
+      spend(work_left_, kGlanceWork);
     } else {
       try_node(n);
     }
@@ -134,6 +134,7 @@ class NodeEntry {
     if (FDCG_MUTANT("sweep-blind") && n % 5 == 3) return;
     if (node.plane().distance(to_) > to_bound_ || (is_left_out(n, node) && !FDCG_MUTANT("leave-out")))
       return;  // before any exact sign is computed
+    if (is_surely_beside(node)) return;
     const Real end_side = side(node, to_, to_bound_);
     if (!(end_side < 0)) return;
     const Real start_side = side(node, from_, from_bound_);
@@ -166,6 +167,21 @@ class NodeEntry {
     best_.node = n;
     best_.feature = {FDCG_FACE, n};
     if (met_exactly && !FDCG_MUTANT("exact-feature")) best_.feature = on_rim(node, met_exactly, point_at(fraction));
+  }
+
+  // Whether all of the way is beyond one of a node's sides, by more than rounding: neither is the node entered then nor does it
+  // hold what the way left. Says so of most nodes that a sweep tries, without an exact sign and without their corners, which
+  // lie elsewhere in the file.
+  [[nodiscard]] bool is_surely_beside(NodeRef<Geometry> node) const {
+    if (!Geometry::kKeepsDirections || !graph_.has_planes()) return false;
+    const Real off = beside_rounding(slab_ + to_bound_, graph_.has_inexact_nodes());
+    uint32_t k = 0;
+    for (; k < node.side_count(); ++k) {
+      const Plane<Real> plane = node.stored_plane(k);
+      if (plane.distance(from_) > off && plane.distance(to_) > off) break;
+    }
+    spend(work_left_, kBesideWork * (k + 1));
+    return k < node.side_count();
   }
 
   // Whether a node's corners lie off its plane, or off a neighbour's: over that one a way in its slab may come below this one's
