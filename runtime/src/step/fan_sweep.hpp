@@ -90,7 +90,7 @@ class FanSweep : public NodeEntry<Geometry> {
   static constexpr uint32_t kFewFans = 3;
   static constexpr uint32_t kRemembered = 8;     // fans; one that is forgotten is looked at again
   static constexpr uint32_t kFarNodes = 20;      // a sweep looks at, before it asks a far corner's tree
-  static constexpr uint32_t kPassingWork = 600;  // of a way within rounding of a corner, for its faces there
+  static constexpr uint32_t kPassingWork = 1200;  // of a way within rounding of a corner, for its faces there
   static constexpr Real kFarWays = 32;           // a corner is far that is as many ways away
   static constexpr Real kAnywhere = 4;           // a slack that every direction is within
 
