@@ -120,7 +120,7 @@ template <class Geometry, class Real = typename Geometry::Real>
 // to the HIP meets, or at the HIP. A sweep that was carried over comes first. Returns FDCG_RESULT_SWEEP_BOUND where the work
 // ran out, else 0.
 template <class Geometry, class Real = typename Geometry::Real>
-[[gnu::noinline]] uint32_t sweep_to_hip(Walk<Geometry>& walk, Feature left, const Vec3<Real>& stood, FreeSpace* space) {
+inline uint32_t sweep_with_loan(Walk<Geometry>& walk, Feature left, const Vec3<Real>& stood, FreeSpace* space) {
   CarriedSweep* const carried = &space->inner->sweep;
   ClearBall* const ball = &space->inner->clear_ball;
   if (!(left == kFree && space->looks_for_balls && is_in_clear_ball(*ball, widen(walk.hip)))) end_clear_ball(ball);
@@ -148,15 +148,7 @@ template <class Geometry, class Real = typename Geometry::Real>
   walk.god_object = from;
   Sweep<Geometry> sweep(walk.graph, left == kFree ? from : stood, from, to, left, &space->work_left);
   FirstHit<Real> first;
-  // A way that leaves a feature begins beside its neighbours, and one past a busy corner may graze dozens of faces: the rules
-  // lend it half of what they have left, and get back what it does not need (contact-model BOUND-2).
-  const uint32_t lent = walk.work_left / 2;
-  space->work_left += lent;
-  const bool is_done = sweep.run(&first);
-  const uint32_t unspent = lent < space->work_left ? lent : space->work_left;
-  space->work_left -= unspent;
-  walk.spend(lent - unspent);
-  if (is_done) {
+  if (sweep.run(&first)) {
     arrive(walk, sweep, to, first);
     if (walk.active == kFree) {
       carried->stalled_sweeps = 0;
@@ -180,6 +172,19 @@ template <class Geometry, class Real = typename Geometry::Real>
   walk.active = walk.seat = kFree;
   if (space->work_left == 0 || !finish_carried_sweep(walk, carried, &space->work_left)) return FDCG_RESULT_SWEEP_BOUND;
   return 0;
+}
+
+// The same with work lent: a way that leaves a feature begins beside its neighbours, and one past a busy corner may graze
+// dozens of faces. The rules lend half of what they have left, and get back what is not needed (contact-model BOUND-2).
+template <class Geometry, class Real = typename Geometry::Real>
+[[gnu::noinline]] uint32_t sweep_to_hip(Walk<Geometry>& walk, Feature left, const Vec3<Real>& stood, FreeSpace* space) {
+  const uint32_t lent = walk.work_left / 2;
+  space->work_left += lent;
+  const uint32_t flags = sweep_with_loan(walk, left, stood, space);
+  const uint32_t unspent = lent < space->work_left ? lent : space->work_left;
+  space->work_left -= unspent;
+  walk.spend(lent - unspent);
+  return flags;
 }
 
 }  // namespace fdcg
