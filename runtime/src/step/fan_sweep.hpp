@@ -88,11 +88,11 @@ class FanSweep : public NodeEntry<Geometry> {
   };
 
   static constexpr uint32_t kFewFans = 3;
-  static constexpr uint32_t kRemembered = 8;     // fans; one that is forgotten is looked at again
-  static constexpr uint32_t kFarNodes = 20;      // a sweep looks at, before it asks a far corner's tree
+  static constexpr uint32_t kRemembered = 8;      // fans; one that is forgotten is looked at again
+  static constexpr uint32_t kFarNodes = 20;       // a sweep looks at, before it asks a far corner's tree
   static constexpr uint32_t kPassingWork = 1200;  // of a way within rounding of a corner, for its faces there
-  static constexpr Real kFarWays = 32;           // a corner is far that is as many ways away
-  static constexpr Real kAnywhere = 4;           // a slack that every direction is within
+  static constexpr Real kFarWays = 32;            // a corner is far that is as many ways away
+  static constexpr Real kAnywhere = 4;            // a slack that every direction is within
 
   [[nodiscard]] uint32_t run_of(uint32_t n) const { return fan_run_of(graph_, n); }
 
@@ -143,6 +143,7 @@ class FanSweep : public NodeEntry<Geometry> {
   // A way within rounding of a corner: it is met where the way enters one of its faces, or where a part of the work does not
   // tell, thousands of faces being within rounding: a hand inside is to feel it in this tick.
   [[gnu::noinline, gnu::cold]] void pass_corner(const fdcg_fan_run& fan, const fdcg_busy_corner& busy, const Arc& arc) {
+    if (is_cut_short_) return;  // by another fan
     uint32_t* const all_left = work_left_;
     const uint32_t lent = *all_left < kPassingWork ? *all_left : kPassingWork, before = best_.node;
     uint32_t left = lent;
