@@ -112,7 +112,7 @@ class FanSweep : public NodeEntry<Geometry> {
     return FDCG_NONE;
   }
 
-  // Whether a fan is looked at node by node for now, as any faces are: far from the corner, of a plate's needles say, the way
+  // Whether a fan is looked at node by node at first, as any faces are: far from the corner, of a plate's needles say, the way
   // touches few boxes, and what it meets is mostly in the first.
   [[nodiscard, gnu::noinline, gnu::cold]] bool is_by_nodes(uint32_t run) {
     if (far_nodes_left_ == 0) return false;
