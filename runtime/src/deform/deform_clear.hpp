@@ -62,7 +62,7 @@ bool find_quiet_ball(const Upkeep<Real>& upkeep, Vec3<double> hip, fdcg_deform_c
   double reach2;
   const double radius = quiet_radius(upkeep, hip, norm(hip - vec(contact->contact.god_object)), &reach2);
   if (!(radius > 0)) return false;
-  ball = {{hip.x, hip.y, hip.z}, radius * radius, 0, 0, 0};
+  ball = {{hip.x, hip.y, hip.z}, radius * radius, 0, 0, 0, 0};
   contact->ball = deform.watched.add({{hip.x, hip.y, hip.z}, ball.radius2, reach2});
   return true;
 }

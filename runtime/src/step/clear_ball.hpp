@@ -38,9 +38,10 @@ inline Real node_distance(const GraphView<Geometry>& graph, NodeRef<Geometry> no
   return beside > 0 ? root(from_plane * from_plane + beside * beside) : from_plane;
 }
 
+// Bit for bit. The offsets tell nearly always; of four comparisons a compiler makes all, each time.
 template <class Real>
 inline bool are_one(const Plane<Real>& a, const Plane<Real>& b) {
-  return a.offset == b.offset && a.normal.x == b.normal.x && a.normal.y == b.normal.y && a.normal.z == b.normal.z;
+  return a.offset == b.offset && memcmp(&a.normal, &b.normal, sizeof a.normal) == 0;
 }
 
 // The nodes nearest to a place, as many as a clear ball may have, and how near the next one is. Of nodes of one plane, bit for
@@ -58,6 +59,7 @@ class NearestNodes {
     while (at < count_ && !are_one(plane, plane_[at]))
       ++at;
     if (at < count_) {
+      stands_for_several_ = true;
       if (!(distance < distance_[at])) return;
     } else if (count_ == kMostNear) {  // the farthest of all makes room
       at = 0;
@@ -72,19 +74,21 @@ class NearestNodes {
     plane_[at] = plane;
     distance_[at] = distance;
   }
-  // Stores those that are nearer than `radius`; how many.
-  uint32_t store(Real radius, NearNodes* near) const {
-    uint32_t count = 0;
+  // Stores those that are nearer than `radius`.
+  void store(Real radius, ClearBall* ball, NearNodes* near) const {
+    uint16_t count = 0;
     *near = {};
     for (uint32_t i = 0; i < count_; ++i) {
       if (distance_[i] < radius) near->node[count++] = node_[i];
     }
-    return count;
+    ball->near_count = count;
+    ball->are_all = stands_for_several_ ? 0 : 1;
   }
 
  private:
   Real limit_;
   uint32_t count_ = 0;
+  bool stands_for_several_ = false;
   uint32_t node_[kMostNear];
   Plane<Real> plane_[kMostNear];
   Real distance_[kMostNear];
@@ -124,19 +128,20 @@ template <class Geometry, class Real = typename Geometry::Real>
   return true;
 }
 
-// The radius of a ball around `at` that no face reaches into but those of `near`, `near_count` of them, by more than the
+// The radius of a ball around `at` that no face reaches into but those of `near`, which the ball counts, by more than the
 // rounding of a sweep inside it: such a sweep finds nothing else. 0 where it would be below `way`. Cost: at most
 // kMostClearVisits records and leaves, a handful where nothing is near.
 template <class Geometry, class Real = typename Geometry::Real>
 [[gnu::noinline, gnu::hot]] Real clear_radius(const GraphView<Geometry>& graph, const Vec3<Real>& at, Real way, NearNodes* near,
-                                              uint32_t* near_count) {
+                                              ClearBall* ball) {
   constexpr Real kWaysAhead = 8;               // what a look is to pay for, in ways of this tick
   constexpr Real kLeastReach = Real(1) / 256;  // ... and tree units
   constexpr Real kFar = 64, kTreeReach = 16;   // tree units: no box reaches further than 8
   const Real unit = static_cast<Real>(tree_unit(graph.header()->extent)), per_unit = 1 / unit;
   const Vec3<Real> p = at * per_unit;
   const Real size = norm1(p);
-  *near_count = 0;
+  ball->near_count = 0;
+  ball->are_all = 1;
   if (size > kFar) return (size / 3 - kTreeReach) * kClearShare<Real> * unit;
   const Real margin = kClearMargins * tree_rounding<Real>(2 * size, 2 * size * RealLimits<Real>::kEpsilon);
   const Real length = way * per_unit;
@@ -173,7 +178,7 @@ template <class Geometry, class Real = typename Geometry::Real>
   }
   const Real clear = static_cast<Real>(root(clear2)), radius = clear * kClearShare<Real> - margin;
   if (!(radius > length)) return 0;
-  *near_count = nearest.store(clear * unit, near);
+  nearest.store(clear * unit, ball, near);
   return radius * unit;
 }
 

@@ -82,14 +82,16 @@ inline bool is_in_new_ball(const GraphView<Geometry>& graph, const Vec3<Real>& f
     --ball->wait;
     return false;
   }
-  uint32_t near_count;
-  const Real way = graph.with_way_of_surface(norm(to - from)), radius = clear_radius(graph, to, way, &inner->near, &near_count);
+  const Real way = graph.with_way_of_surface(norm(to - from)), radius = clear_radius(graph, to, way, &inner->near, ball);
   if (!(radius > way)) {
+    end_clear_ball(ball);
     ball->wait = ball->next_wait;
     ball->next_wait = static_cast<uint16_t>(ball->next_wait < kLongestWait ? 2 * ball->next_wait + 1 : kLongestWait);
     return false;
   }
-  *ball = {{to.x, to.y, to.z}, FDCG_MUTANT("clear-ball-large") ? 4 * radius * radius : radius * radius, 0, 0, near_count};
+  store(to, ball->centre);
+  ball->radius2 = FDCG_MUTANT("clear-ball-large") ? 4 * radius * radius : radius * radius;
+  ball->wait = ball->next_wait = 0;
   return true;
 }
 
@@ -148,7 +150,9 @@ inline uint32_t sweep_with_loan(Walk<Geometry>& walk, Feature left, const Vec3<R
   walk.god_object = from;
   Sweep<Geometry> sweep(walk.graph, left == kFree ? from : stood, from, to, left, &space->work_left);
   FirstHit<Real> first;
-  if (sweep.run(&first)) {
+  const bool is_near = ball->radius2 > 0 && ball->are_all != 0;  // in the ball, which has left what is not near out
+  if (is_near) sweep.run_near(space->inner->near.node, ball->near_count, &first);
+  if (is_near || sweep.run(&first)) {
     arrive(walk, sweep, to, first);
     if (walk.active == kFree) {
       carried->stalled_sweeps = 0;

@@ -31,6 +31,14 @@ class Sweep : public FanSweep<Geometry> {
     return is_done;
   }
 
+  // Where no others than these may be met (contact-model FREE-7).
+  void run_near(const uint32_t* nodes, uint32_t count, FirstHit<Real>* first) {
+    best_ = *first;
+    for (uint32_t i = 0; i < count; ++i)
+      glance_at_node(nodes[i]);
+    *first = best_;
+  }
+
   // In index order from *next_leaf on (a leaf of the hierarchy, or a node where there is none), which moves on by at least one.
   // False: the work ran out.
   bool run_in_order(FirstHit<Real>* first, uint32_t* next_leaf) {

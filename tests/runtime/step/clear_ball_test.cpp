@@ -61,11 +61,13 @@ class Drift {
 
 struct Tally {
   long free = 0, touching = 0, in_ball = 0, near_nodes = 0;
+  long met_of_near = 0, met_of_all = 0;  // by sweeps in a ball: of its nodes alone, or of all
 };
 
-Tally compare(const PolygonSoup& soup, Precision precision, std::uint64_t seed) {
+Tally compare(const PolygonSoup& soup, Precision precision, bool merges, std::uint64_t seed) {
   CompileOptions options;
   options.precision = precision;
+  options.merge = merges;
   const CompiledMesh mesh(soup, options);
   Contact with(mesh.view(), with_skips(0)), without(mesh.view(), with_skips(FDCG_STEP_OPT_CLEAR_BALL));
   Drift drift(extent(soup), seed);
@@ -73,7 +75,8 @@ Tally compare(const PolygonSoup& soup, Precision precision, std::uint64_t seed) 
   Tally tally;
   for (int i = 0; i < ticks(); ++i) {
     const Hip hip = drift.next(surface);
-    const bool was_in_ball = internals_of(with.state).clear_ball.radius2 > 0;
+    const fdcg::ClearBall ball = internals_of(with.state).clear_ball;
+    const bool was_in_ball = ball.radius2 > 0;
     with.step(hip);
     without.step(hip);
     INFO(soup.name << ", seed " << seed << ", tick " << i << ": " << with.describe() << "; without: " << without.describe());
@@ -84,6 +87,8 @@ Tally compare(const PolygonSoup& soup, Precision precision, std::uint64_t seed) 
     if (!is_free) surface = with.god_object();
     tally.free += is_free;
     tally.touching += !is_free;
+    if (was_in_ball && !is_free && norm(fdcg::vec(with.state.hip) - fdcg::vec(ball.centre)) < std::sqrt(ball.radius2))
+      ++(ball.are_all != 0 ? tally.met_of_near : tally.met_of_all);
     tally.near_nodes += was_in_ball && internals_of(with.state).clear_ball.near_count > 0;
     tally.in_ball += was_in_ball && internals_of(with.state).clear_ball.radius2 > 0;
   }
@@ -124,16 +129,20 @@ TEST_CASE("forces and god-objects are the same bit for bit with and without the 
          {ico_sphere(4), star_sphere(3, 0.3, 1), corner_pit(), thin_plate(1e-3, 6), torus(40, 20), needle_strip(200, 0.3, 2),
           scaled(spiky_sphere(3, 0.5, 2), 1e-6), scaled(star_sphere(2, 0.3, 4), 1e6), cone(300),
           rounded_to_float(transformed(grid_box(5, 5, 5, {1, 1, 1}), random_rotation(3)))}) {
-      const Tally tally = compare(soup, precision, ++seed);
+      const Tally tally = compare(soup, precision, soup.name.rfind("grid", 0) != 0, ++seed);
       sum.free += tally.free;
       sum.touching += tally.touching;
       sum.in_ball += tally.in_ball;
       sum.near_nodes += tally.near_nodes;
+      sum.met_of_near += tally.met_of_near;
+      sum.met_of_all += tally.met_of_all;
     }
   }
   CHECK(sum.touching > sum.free / 100);
   CHECK(sum.in_ball > sum.free / 3);  // else the ball was hardly tried
   CHECK(sum.near_nodes > sum.free / 10);
+  CHECK(sum.met_of_near > 20);
+  CHECK(sum.met_of_all > 10);
 }
 
 TEST_CASE("no face reaches into a clear ball but those that it names") {
