@@ -78,7 +78,7 @@ inline float root(float a) {
 }
 
 template <class Real>
-inline Real norm(Vec3<Real> a) {
+FDCG_HOT Real norm(Vec3<Real> a) {
   return root(dot(a, a));
 }
 // |x| + |y| + |z|: an upper bound of the length that costs no root.

@@ -19,7 +19,7 @@ BoxTree::BoxTree(uint32_t nodes)
   }
 }
 
-void tree_way(Vec3<float> from, Vec3<float> along, float pad, TreeWay* way) {
+void tree_way(const Vec3<float>& from, const Vec3<float>& along, float pad, TreeWay* way) {
   way->from[0] = from.x, way->from[1] = from.y, way->from[2] = from.z;
   const float ways[3] = {along.x, along.y, along.z};
   for (int k = 0; k < 3; ++k) {

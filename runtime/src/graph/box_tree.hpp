@@ -60,7 +60,7 @@ struct TreeWay {
 };
 
 // A way near the tree. `pad`: tree_rounding.
-void tree_way(Vec3<float> from, Vec3<float> along, float pad, TreeWay* way);
+void tree_way(const Vec3<float>& from, const Vec3<float>& along, float pad, TreeWay* way);
 
 // The part of a way that is near the tree, from fraction *begin to *end. False: the way passes by. One from so far away that
 // its coordinates say nothing of a box touches all.

@@ -200,14 +200,8 @@ template <class Geometry, class Real = typename Geometry::Real>
                                                   fdcg_contact* contact, fdcg_result* result) {
   const GraphView<Geometry> graph(raw);
   FrictionTerms terms = terms_of(params, &raw, *contact);
-  Walk<Geometry> walk = {graph,
-                         {friction_of<Real>(params, *contact), &terms},
-                         hip,
-                         plane_rounding_bound(graph, hip),
-                         narrow<Real>(contact->god_object),
-                         {contact->state, contact->feature},
-                         seat_of(*contact),
-                         kRuleWork};
+  Walk<Geometry> walk(graph, friction_of<Real>(params, *contact), &terms, hip, plane_rounding_bound(graph, hip),
+                      narrow<Real>(contact->god_object), {contact->state, contact->feature}, seat_of(*contact), kRuleWork);
   walk_to_hip<Geometry, Real>(walk, nullptr, 0, params, contact, result);
   store(hip, contact->hip);
   write_position(*raw.header, *contact, result);
@@ -368,23 +362,17 @@ FDCG_STEP_ON void step_on(const fdcg_graph& raw, const fdcg_params& params, cons
     if (ends_on_edge) {
       contact->state = inner.seat_state = FDCG_EDGE;
       contact->feature = inner.seat_feature = hop.edge;
-      hop.move.target = by_parts(hop.god_object);
     }
     if (ends_on_edge || ends_on_face(graph, hip, hop.move.kind, hop.transitions > 1)) {
       if (!ends_on_edge && hop.move.kind == FaceMoveKind::slides) leave_seat(contact);
       result->transitions = hop.transitions;
-      return end_short_way_at(*raw.header, params, hip, hop.move.target, hop.friction.is_slipping, contact, result);
+      const Vec3<Real>& end = ends_on_edge ? hop.god_object : hop.move.target;
+      return end_short_way_at(*raw.header, params, hip, end, hop.friction.is_slipping, contact, result);
     }
   }
-  Walk<Geometry> walk = {graph,
-                         {static_cast<const PlainFriction<Real>&>(hop.friction), nullptr},
-                         hip,
-                         bound,
-                         hop.god_object,
-                         {contact->state, contact->feature},
-                         hop.transitions != 0 ? Feature{FDCG_EDGE, hop.edge} : seat_of(*contact),
-                         hop.work_left,
-                         hop.rounding_residual};
+  Walk<Geometry> walk(graph, hop.friction, nullptr, hip, bound, hop.god_object, {contact->state, contact->feature},
+                      hop.transitions != 0 ? Feature{FDCG_EDGE, hop.edge} : seat_of(*contact), hop.work_left);
+  walk.rounding_residual = by_parts(hop.rounding_residual);
   walk_to_hip<Geometry, Real>(walk, has_move ? &hop.move : nullptr, hop.transitions, params, contact, result);
 }
 
@@ -413,7 +401,8 @@ void step(const fdcg_graph& raw, const fdcg_params& params, fdcg_contact* contac
   } else {
     if (kGlances && contact->state == FDCG_FACE) {
       const GraphView<Geometry> graph(raw);
-      const FaceTick<Real> tick = look_at_face(graph, params, *contact, hip, plane_rounding_bound(graph, hip));
+      const FaceTick<Real> tick =
+          look_at_face(graph, params, *contact, by_parts(hip), plane_rounding_bound(graph, by_parts(hip)));
       if (ends_on_face(graph, hip, tick.glance.kind, false)) {
         if (tick.glance.kind == FaceMoveKind::slides) leave_seat(contact);
         end_at(header, params, hip, tick.glance.target, tick.is_slipping, contact, result);
