@@ -71,8 +71,8 @@ struct FreeSpace {
   const double* last_hip;
 };
 
-// Whether a ball that no faces touch but a few holds the whole way; it is kept. Where there was none, the next looks wait for
-// longer and longer: near the surface a sweep is cheaper.
+// Whether a ball that no faces touch but a few holds the whole way; it is kept. Where there was none, or none that would hold
+// the next way too, the next looks wait for longer and longer: there a sweep is cheaper.
 template <class Geometry, class Real = typename Geometry::Real>
 inline bool is_in_new_ball(const GraphView<Geometry>& graph, const Vec3<Real>& from, const Vec3<Real>& to,
                            ContactInternals* inner) {
@@ -83,15 +83,19 @@ inline bool is_in_new_ball(const GraphView<Geometry>& graph, const Vec3<Real>& f
     return false;
   }
   const Real way = graph.with_way_of_surface(norm(to - from)), radius = clear_radius(graph, to, way, &inner->near, ball);
-  if (!(radius > way)) {
-    end_clear_ball(ball);
+  const bool is_found = radius > way;
+  if (radius > 2 * way) {  // it holds the next tick's way too
+    ball->wait = ball->next_wait = 0;
+  } else {
     ball->wait = ball->next_wait;
     ball->next_wait = static_cast<uint16_t>(ball->next_wait < kLongestWait ? 2 * ball->next_wait + 1 : kLongestWait);
+  }
+  if (!is_found) {
+    end_clear_ball(ball);
     return false;
   }
   store(to, ball->centre);
   ball->radius2 = FDCG_MUTANT("clear-ball-large") ? 4 * radius * radius : radius * radius;
-  ball->wait = ball->next_wait = 0;
   return true;
 }
 
