@@ -242,6 +242,8 @@ class Walker:
             after = self.place_on_edge(self.rim, u, near)
         elif self.seat is None or self.seat[0] != VERTEX or self.seat[1] not in edge.corner:
             return False
+        elif any(side < 0 and s < 0 for side, s in self.sides(edge)) and not self.holds(after):
+            return False
         if not self.may_visit(after, visited):
             return False
         self.at = after

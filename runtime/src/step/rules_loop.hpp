@@ -84,10 +84,22 @@ Decision apply_rule(Walk<Geometry>& walk) {
   }
 }
 
+// Whether the edge on which the god-object was last placed would let go a HIP that is behind and over one of its faces.
+template <class Geometry, class Real = typename Geometry::Real>
+[[gnu::noinline, gnu::cold]] bool lets_go_over_face(Walk<Geometry>& walk) {
+  const ConnectionRef<Geometry> connection = walk.graph.connection(walk.rim);
+  if (connection.type() == FDCG_BOUNDARY) return false;
+  EdgeSides<Real> s;
+  look_at_sides(walk, connection, &s);
+  const bool is_over = (s.side[0] < 0 && s.voronoi[0] < 0) || (s.side[1] < 0 && s.voronoi[1] < 0);
+  return is_over && lets_go(walk.graph, walk.hip_bound, connection.type(), s);
+}
+
 // contact-model TICK-5: rounding hands the god-object around a corner. The corner, whose rule is exact, decides if it has not
 // been asked; whatever the way here was, or the next tick, which knows nothing of it, would decide otherwise. If it has, and
 // a face there has sent the god-object back, the edge is asked by which the face did so: at the tip of a long body the corner's
-// edges lead as far but for rounding, and so edge by edge the one is reached that holds. False: neither is left.
+// edges lead as far but for rounding, and so edge by edge the one is reached that holds. An edge is not asked that
+// would let go a HIP behind and over one of its faces: the corner has found that it is inside. False: neither is left.
 template <class Geometry, class Real = typename Geometry::Real>
 [[gnu::noinline, gnu::cold]] bool goes_on_at_corner(Walk<Geometry>& walk, Trail<Geometry>* trail) {
   if (walk.rim == FDCG_NONE || FDCG_MUTANT("circle-at-corner")) return false;
@@ -103,7 +115,7 @@ template <class Geometry, class Real = typename Geometry::Real>
     const bool ends_there = connection.corner(0) == walk.seat.index || connection.corner(1) == walk.seat.index;
     if (walk.seat.state != FDCG_VERTEX || !ends_there) return false;
   }
-  if (!trail->may_visit(next)) return false;
+  if (!trail->may_visit(next) || (next.state == FDCG_EDGE && lets_go_over_face(walk))) return false;
   walk.active = next;
   return true;
 }
