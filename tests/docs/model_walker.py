@@ -383,8 +383,11 @@ class Walker:
         return minus(x, times(self.graph.normal[face], self.graph.distance(face, x)))
 
     def is_between_ends(self, face, k, x):
+        return self.past_ends(face, k, x) <= self.graph.edge[self.graph.side[face][k][0]].end_tolerance
+
+    def past_ends(self, face, k, x):
         edge = self.graph.edge[self.graph.side[face][k][0]]
-        return -edge.end_tolerance <= edge.parameter(x) <= edge.length + edge.end_tolerance
+        return max(-edge.parameter(x), edge.parameter(x) - edge.length)
 
     def first_crossing(self, face, target):  # contact-model FACE-5
         rounding, best = 4 * EPS * (norm1(target) + self.graph.extent), None
@@ -394,7 +397,7 @@ class Walker:
                 continue
             fraction = 1.0 if s1 <= rounding or s1 <= s0 else 0.0 if s0 >= 0 else -s0 / (s1 - s0)
             is_tie = best is not None and fraction == best[0] == 1.0
-            is_better = is_tie and not self.is_between_ends(face, best[1], target) and self.is_between_ends(face, k, target)
+            is_better = is_tie and max(0.0, self.past_ends(face, k, target)) < self.past_ends(face, best[1], target)
             if best is None or fraction < best[0] or is_better:
                 best = (fraction, k)
         return best

@@ -19,6 +19,14 @@ struct Crossing {
   Real fraction = 1;
 };
 
+// Whether a place is past the ends of a side, and farther so than past those of another.
+template <class Geometry, class Real = typename Geometry::Real>
+[[gnu::noinline, gnu::cold]] bool is_farther_past_ends(NodeRef<Geometry> node, uint32_t k, uint32_t other,
+                                                       const Vec3<Real>& x) {
+  const Real past = past_ends(node, k, x, Real(0));
+  return past > 0 && past_ends(node, other, x, Real(0)) < past;
+}
+
 // Looks at the sides from the first on beyond whose plane the move ends, or near it. Its points by reference: copied to where
 // arguments are, two coordinates at once, they would wait for the stores of each.
 template <class Geometry, class Real = typename Geometry::Real>
@@ -34,12 +42,12 @@ template <class Geometry, class Real = typename Geometry::Real>
     if ((FDCG_MUTANT("crossing-sign") && !(s1 * s0 < 0)) || (FDCG_MUTANT("crossing-onto") && !(s0 <= 0 && s1 > 0))) continue;
     const bool ends_there = (s1 <= rounding || s1 <= s0) && !FDCG_MUTANT("along-side");
     const Real fraction = ends_there ? Real(1) : s0 >= 0 ? Real(0) : -s0 / (s1 - s0);
-    // A face like a needle may be narrower than rounding: of two sides that the move ends on, the one that reaches there
-    // counts.
+    // A face like a needle may be narrower than rounding: of two sides that the move ends on, the one counts that reaches
+    // there, or nearer to it.
     const bool is_tie = fraction == 1 && first.fraction == 1 && first.local_side != FDCG_NONE;
     if (first.local_side == FDCG_NONE ||
         (FDCG_MUTANT("last-crossing") ? fraction > first.fraction : fraction < first.fraction) ||
-        (is_tie && !is_between_ends(node, first.local_side, to) && is_between_ends(node, k, to)))
+        (is_tie && is_farther_past_ends(node, first.local_side, k, to)))
       first = {k, fraction};
   }
   return first;

@@ -112,12 +112,18 @@ struct EdgeLine : Edge<Real> {
   [[nodiscard]] Real parameter(Vec3<Real> x) const { return dot(x - this->start, this->direction); }
 };
 
+// How far a place is past the nearer end of a side, less that end's tolerance times `share`; negative between the ends.
+template <class Geometry, class Real = typename Geometry::Real>
+[[gnu::noinline, gnu::cold]] Real past_ends(NodeRef<Geometry> node, uint32_t k, const Vec3<Real>& x, Real share) {
+  const EdgeLine<Real> line(node.graph(), node, k);
+  const Real u = line.parameter(x), past = u - line.length;
+  return (-u > past ? -u : past) - share * line.end_tolerance;
+}
+
 // Whether a place is between the ends of a side, up to rounding.
 template <class Geometry, class Real = typename Geometry::Real>
-[[gnu::noinline, gnu::cold]] bool is_between_ends(NodeRef<Geometry> node, uint32_t k, const Vec3<Real>& x) {
-  const EdgeLine<Real> line(node.graph(), node, k);
-  const Real u = line.parameter(x);
-  return u >= -line.end_tolerance && u <= line.length + line.end_tolerance;
+inline bool is_between_ends(NodeRef<Geometry> node, uint32_t k, const Vec3<Real>& x) {
+  return past_ends(node, k, x, Real(1)) <= 0;
 }
 
 // Whether a corner is farther from the HIP than the god-object. It is then not placed there, but the corner's rule decides,
