@@ -90,6 +90,14 @@ class NodeEntry {
   Real slab_;
   FirstHit<Real> best_;
 
+  // On which side of the line through two corners of a node the way passes: 1 on the outer, where the node's loop runs from the
+  // first to the second; 0 where the two meet exactly. What two neighbours say of their edge are exact
+  // opposites: so are the rounded products.
+  [[nodiscard, gnu::noinline, gnu::cold]] int exact_orientation(NodeRef<Geometry> node, uint32_t start, uint32_t end) const {
+    return orient3d_sign(widen(from_), widen(to_), widen(graph_.corner_point(node.corner(start))),
+                         widen(graph_.corner_point(node.corner(end))), work_left_);
+  }
+
   // Outward of the face that the way leaves, or of that face at the edge which it is in front of since LEAVE-2, if the corner
   // is one of its own: the way meets nothing behind that. Else not set.
   [[gnu::noinline, gnu::cold]] void find_outward_of_left(uint32_t corner, Vec3<Real>* outward) const {
@@ -293,15 +301,10 @@ class NodeEntry {
     return side(plane, point, plane_rounding_bound(graph_, point));
   }
 
-  // On which side of the line a side's edge lies that runs from `start` to `end`: 1 where the line passes outside, 0 where the
-  // two meet exactly. What two neighbours say of their edge are exact opposites: so are the rounded products.
-  [[nodiscard, gnu::noinline, gnu::cold]] int orientation(const Vec3<Real>& start, const Vec3<Real>& end) const {
-    const int sign = sure_orientation(start, end);
-    return sign != 0 ? sign : orient3d_sign(widen(from_), widen(to_), widen(start), widen(end), work_left_);
-  }
-  // The same of two corners of a node.
+  // The same, rounded where that cannot matter.
   [[nodiscard, gnu::noinline, gnu::cold]] int orientation(NodeRef<Geometry> node, uint32_t start, uint32_t end) const {
-    return orientation(graph_.corner_point(node.corner(start)), graph_.corner_point(node.corner(end)));
+    const int sign = sure_orientation(graph_.corner_point(node.corner(start)), graph_.corner_point(node.corner(end)));
+    return sign != 0 ? sign : exact_orientation(node, start, end);
   }
   // The same where rounding cannot matter; else 0.
   [[nodiscard]] int sure_orientation(const Vec3<Real>& start, const Vec3<Real>& end) const {
