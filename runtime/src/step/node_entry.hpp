@@ -59,10 +59,11 @@ class NodeEntry {
     const NodeRef<Geometry> node = graph_.node(n);
     const Real rounding = side_rounding(from_bound_, to_bound_), off = slab_ - from_bound_;  // corners off their planes
     Real begin = least, end = 1;
-    if (!clip_to(node, rounding + off, &begin, &end)) return kNever;
+    uint32_t side_left;
+    if (!clip_to(node, rounding + off, &begin, &end, &side_left)) return kNever;
     if (fraction > end) {  // come in after the way has left the node: where it surely is still over it
       Real sharp_begin = least, sharp_end = 1;
-      fraction = clip_to(node, 0, &sharp_begin, &sharp_end) ? sharp_end : end;
+      fraction = clip_to(node, 0, &sharp_begin, &sharp_end, &side_left) ? sharp_end : end;
     }
     return fraction < begin ? begin : fraction;
   }
@@ -117,7 +118,9 @@ class NodeEntry {
   static constexpr uint32_t kLastBit = 63;
 
   // Cuts the part of the way from *begin to *end down to what is over a node, its sides moved `outwards`. False: nothing is.
-  [[nodiscard, gnu::noinline, gnu::cold]] bool clip_to(NodeRef<Geometry> node, Real outwards, Real* begin, Real* end) const {
+  // *side_left: over which side the way leaves before *end, if over any.
+  [[nodiscard, gnu::noinline, gnu::cold]] bool clip_to(NodeRef<Geometry> node, Real outwards, Real* begin, Real* end,
+                                                       uint32_t* side_left) const {
     spend(work_left_, kSideWork * node.side_count());
     bool is_beside = false;
     for (uint32_t k = 0; k < node.side_count(); ++k) {
@@ -127,7 +130,7 @@ class NodeEntry {
       is_beside = is_beside || !(begins_inside || ends_inside);
       if (begins_inside == ends_inside) continue;
       const Real at = s0 / (s0 - s1);
-      if (begins_inside && at < *end) *end = at;
+      if (begins_inside && at < *end) *end = at, *side_left = k;
       if (ends_inside && at > *begin) *begin = at;
     }
     return !is_beside && *begin <= *end;
@@ -167,7 +170,13 @@ class NodeEntry {
       Real begin = start_side > thick ? (start_side - thick) / fall : Real(0);
       const bool is_below = start_side + thick < fall;  // at the way's end, or, along the node, all the way
       Real end = !is_below ? Real(1) : fall != 0 ? (start_side + thick) / fall : Real(-1);
-      if (!clip_to(node, 0, &begin, &end)) return;
+      uint32_t side_left = FDCG_NONE;
+      if (!clip_to(node, 0, &begin, &end, &side_left)) return;
+      // Out of the slab over a convex side, in front at its end of the face across by more than that one's slab: no edge would
+      // hold it (EDGE-1), and it has come below neither face.
+      if (side_left != FDCG_NONE && graph_.connection(node.connection(side_left)).type() == FDCG_CONVEX &&
+          graph_.node(node.across(side_left)).plane().distance(to_) > slab_)
+        return;
       met_exactly = 0;
     }
     if (FDCG_MUTANT("distance-tolerance") && left_.state != FDCG_FREE && fraction < Real(1e-4)) return;
