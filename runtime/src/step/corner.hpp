@@ -189,7 +189,9 @@ inline Feature next_from_corner(Walk<Geometry>& walk, CornerRef<Geometry> corner
     search_all(search, corner);
   }
   const Feature found = search.best.feature;
-  if (search.lost2 < kClearlyNearer2<Real> * search.best.distance2 && walk.graph.has_inexact_nodes()) return kFree;
+  if (walk.graph.has_inexact_nodes() && search.lost2 < kClearlyNearer2<Real> * search.best.distance2 &&
+      search.best.distance2 > square(slab_depth(2 * walk.graph.max_deviation(), walk.hip_bound)))
+    return kFree;
   if (is_inside) return found == kFree ? walk.active : found;
   if (found == kFree) {
     const bool may_hold = !corner.is_open() || FDCG_MUTANT("open-corner");
