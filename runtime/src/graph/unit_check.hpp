@@ -13,12 +13,10 @@ struct Vectors;
 template <>
 struct Vectors<double> {
   using Reals = double __attribute__((vector_size(16)));
-  using Masks = int64_t __attribute__((vector_size(16)));
 };
 template <>
 struct Vectors<float> {
   using Reals = float __attribute__((vector_size(16)));
-  using Masks = int32_t __attribute__((vector_size(16)));
 };
 #endif
 
@@ -38,12 +36,17 @@ class UnitCheck {
 #if FDCG_HAS_VECTORS
  private:
   using Reals = typename Vectors<Real>::Reals;
-  using Masks = typename Vectors<Real>::Masks;
+  // Of comparisons, whatever the numbers: GCC 12 takes masks of doubles apart where they are combined.
+  using Masks = int32_t __attribute__((vector_size(16)));
 
   static Reals load(const Real* from) {
     Reals reals;
     memcpy(&reals, from, sizeof reals);
     return reals;
+  }
+
+  static Masks within(Reals x, Reals above, Reals most) {
+    return reinterpret_cast<Masks>(x > above) & reinterpret_cast<Masks>(x <= most);
   }
 
   Reals above_, most_;
@@ -75,7 +78,7 @@ inline void UnitCheck<double>::look_at(const double* a, const double* b) {
   const Reals z = __builtin_shufflevector(a1, b1, 0, 2), fourth = __builtin_shufflevector(a1, b1, 1, 3);
   const Reals length2 = x * x + y * y + z * z;
   const Reals least = {kLeast, kLeast}, longest = {kMost, kMost};
-  holds_ &= (length2 > least) & (length2 <= longest) & (fourth > above_) & (fourth <= most_);
+  holds_ &= within(length2, least, longest) & within(fourth, above_, most_);
 }
 template <>
 inline void UnitCheck<float>::look_at(const float* a, const float* b) {
@@ -84,7 +87,7 @@ inline void UnitCheck<float>::look_at(const float* a, const float* b) {
   const Reals z = __builtin_shufflevector(u2, v2, 2, 6, 2, 6), length2 = xy + y + z;
   const Reals fourth = __builtin_shufflevector(u, v, 3, 7, 3, 7);
   const Reals judged = __builtin_shufflevector(length2, fourth, 0, 1, 4, 5);
-  holds_ &= (judged > above_) & (judged <= most_);
+  holds_ &= within(judged, above_, most_);
 }
 template <class Real>
 bool UnitCheck<Real>::holds() const {

@@ -38,7 +38,7 @@ constexpr uint8_t kLeastCellExponent = 127 - 24, kLargestCellExponent = 127;
 
 // A connection's record as one word: node 0, side of node 0, side of node 1, type, flatness.
 constexpr int kSide1At = 40, kTypeAt = 48, kFlatnessAt = 56;
-constexpr uint64_t kNode = 0xFFFFFFFFu, kByte = 0xFF;
+constexpr uint64_t kByte = 0xFF;
 
 uint64_t word_of(const fdcg_connection& connection) {
   static_assert(sizeof(fdcg_connection) == 8 && __BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__);
@@ -117,19 +117,17 @@ class SafeChunk {
     return records_.has_planes() ? are_sound<0, true>() : are_sound<0, false>();
   }
 
-  // With no branch that could not be predicted. False: something is wrong, and refuse_nodes() says what. kSides: of every node,
-  // in a block of a size that is known here; 0: any.
+  // Without a branch that a sound file takes now and then. False: something is wrong, and refuse_nodes() says what. kSides: of
+  // every node, in a block of a size that is known here; 0: any.
   template <uint32_t kSides, bool kHasPlanes>
   [[gnu::noinline]] bool are_sound() const {
-    const uint32_t last_connection = header_.connection_count - 1, last_corner = header_.corner_count - 1;
-    const uint32_t nodes = header_.node_count;
-    const uint64_t first_node = chunk_.first_of(nodes), end = chunk_.end_of(nodes);
-    const fdcg_connection* const connections = records_.connections();
+    const uint64_t first_node = chunk_.first_of(header_.node_count), end = chunk_.end_of(header_.node_count);
     uint64_t at = kSides != 0 ? first_node * node_bytes<Real>(kSides, kHasPlanes) : offset_of(first_node);
     const uint64_t begin = at, stop = kSides != 0 ? end * node_bytes<Real>(kSides, kHasPlanes) : offset_of(end);
     const uint64_t ahead = stop > begin ? stop - begin : 0;  // to the next chunk; of damaged offsets anything
-    uint32_t sides = 0, seconds = 0, wrong = first_node == 0 && begin != 0, over = 0;
+    uint32_t sides = 0, seconds = 0;
     UnitCheck<Real> check(-largest_offset_, largest_offset_);
+    if (first_node == 0 && begin != 0) return false;
     for (uint64_t n = first_node; n < end; ++n) {
       if (kSides == 0 && !holds_node(at)) return false;
       const unsigned char* const block = records_.nodes() + at;
@@ -138,22 +136,12 @@ class SafeChunk {
       at += node_bytes<Real>(count, kHasPlanes);
       if (kSides == 0 && (!is_side_count(count) || at != offset_of(n + 1) || at > node_section_bytes_)) return false;
       prefetch(block + ahead);
-      wrong |= (node.side_count ^ count) | (node.flags & ~uint32_t{FDCG_NODE_INEXACT});
+      if (node.side_count != count || (node.flags & ~uint32_t{FDCG_NODE_INEXACT}) != 0) return false;
       const auto* const side_records = reinterpret_cast<const fdcg_side*>(block + offsetof(Node, sides));
 #pragma GCC unroll 3
       for (uint32_t k = 0; k < count; ++k) {
-        const fdcg_side side = side_records[k];
-        const uint32_t link = side.link >> 1, which = side.link & 1;
-        const fdcg_connection& connection = connections[link <= last_connection ? link : 0];
-        over += link > last_connection;
-        over += side.corner > last_corner;
-        over += side.across + 1 > nodes;  // FDCG_NONE + 1 is 0
-        // As its first side, the connection's first node is this one, else the one across.
-        const uint32_t self = static_cast<uint32_t>(n), first = self ^ ((self ^ side.across) & (0 - which));
-        wrong |= (connection.node ^ first) | (connection.side[which] ^ k);
-        wrong |= static_cast<uint32_t>(connection.type == FDCG_BOUNDARY) ^ static_cast<uint32_t>(side.across == FDCG_NONE);
-        if (kSides == 0 && side.across < nodes) over += connection.side[1 - which] >= side_count_of(side.across);
-        seconds += which;
+        if (fault_of_side<kSides != 0>(static_cast<uint32_t>(n), k, side_records[k]) != nullptr) return false;
+        seconds += side_records[k].link & 1;
       }
       sides += count;
       const Real* const face = node.plane.normal;
@@ -164,11 +152,13 @@ class SafeChunk {
           check.look_at(planes + 4 * k, planes + 4 * (k + 1 < count ? k + 1 : k));
       } else {
         check.look_at(face, face);
+        bool has_planes = true;
         for (uint32_t k = 0; k < count; ++k)
-          wrong |= !has_derived_plane(node, side_records[k], side_records[k + 1 < count ? k + 1 : 0]);
+          has_planes &= has_derived_plane(node, side_records[k], side_records[k + 1 < count ? k + 1 : 0]);
+        if (!has_planes) return false;
       }
     }
-    if ((over | wrong) != 0 || !check.holds()) return false;
+    if (!check.holds()) return false;
     part_->sides += sides;
     part_->first_sides += sides - seconds;
     return true;
@@ -224,7 +214,7 @@ class SafeChunk {
     const Real* const planes = reinterpret_cast<const Real*>(block + planes_at<Real>(node.side_count));
     const auto* const sides = reinterpret_cast<const fdcg_side*>(block + offsetof(Node, sides));
     for (uint32_t k = 0; k < node.side_count; ++k) {
-      if (const char* const what = fault_of_side(n, k, sides[k]); what != nullptr) return what;
+      if (const char* const what = fault_of_side<false>(n, k, sides[k]); what != nullptr) return what;
       const bool has_plane = records_.has_planes()
                                  ? is_plane(planes + 4 * k)
                                  : has_derived_plane(node, sides[k], sides[k + 1 < node.side_count ? k + 1 : 0]);
@@ -233,17 +223,23 @@ class SafeChunk {
     return nullptr;
   }
 
+  // kIsUniform: all nodes have as many sides, and connections() sees to those across.
+  template <bool kIsUniform>
   [[nodiscard]] const char* fault_of_side(uint32_t n, uint32_t k, const fdcg_side& side) const {
     const uint32_t link = side.link >> 1, which = side.link & 1;
     if (link >= header_.connection_count) return "connection out of range";
     if (side.corner >= header_.corner_count) return "corner out of range";
-    if (side.across + 1 > header_.node_count) return "neighbour out of range";  // FDCG_NONE + 1 is 0
+    const uint32_t nodes = header_.node_count, across = side.across;
+    const bool is_nowhere = across >= nodes && across != FDCG_NONE;
     const fdcg_connection& connection = records_.connections()[link];
-    if (connection.node != (which == 0 ? n : side.across) || connection.side[which] != k)
-      return "its connection does not own it";
-    if ((connection.type == FDCG_BOUNDARY) != (side.across == FDCG_NONE)) return "a connection's type does not fit its nodes";
-    const bool has_neighbour = side.across != FDCG_NONE;
-    if (has_neighbour && connection.side[1 - which] >= side_count_of(side.across)) return "its neighbour has no such side";
+    const uint32_t first[2] = {n, across};  // the connection's, by which of its sides this one is
+    if (connection.node != first[which] || connection.side[which] != k)
+      return is_nowhere ? "neighbour out of range" : "its connection does not own it";
+    const bool is_boundary = __builtin_expect(connection.type == FDCG_BOUNDARY, false);
+    if (is_boundary ? across != FDCG_NONE : across >= nodes)
+      return is_nowhere ? "neighbour out of range" : "a connection's type does not fit its nodes";
+    if (!kIsUniform && across < nodes && connection.side[1 - which] >= side_count_of(across))
+      return "its neighbour has no such side";
     return nullptr;
   }
 
@@ -256,21 +252,33 @@ class SafeChunk {
   }
 
   [[gnu::noinline]] fdcg_status connections() {
-    constexpr uint64_t kTypes = FDCG_BOUNDARY, kFlatnesses = FDCG_FLAT_ANGLE, kPerCount = 16;
+    constexpr uint64_t kPerCount = 16, kMostAtOnce = (1 << kPerCount) - 1;
     const uint64_t end = chunk_.end_of(header_.connection_count), most_sides = uniform_sides_ == 3 ? 3 : kByte + 1;
+    // Of a byte that is at most 2 or 3: higher bits; and both of the lower two.
+    constexpr uint64_t kHigher = 0xFC, kBoth = 1;
+    static_assert(FDCG_BOUNDARY == 3 && FDCG_FLAT_ANGLE == 2);
+    const uint64_t side1 = uniform_sides_ == 3 ? 1 : 0;
+    const uint64_t higher = kHigher << kTypeAt | kHigher << kFlatnessAt | side1 * (kHigher << kSide1At);
+    const uint64_t both = kBoth << kFlatnessAt | side1 * (kBoth << kSide1At);
     for (uint64_t c = chunk_.first_of(header_.connection_count); c < end;) {
-      uint64_t types = 0;  // four counts of 16 bits
+      uint64_t types = 0, any = 0, pairs = 0;  // types: four counts of 16 bits
       const uint64_t first = c;
-      c = end - first < kNode >> kPerCount ? end : first + (kNode >> kPerCount);
-      const fdcg_status status = for_all(first, c, "connection", error_, [&](uint32_t i, auto* faults) {
-        const uint64_t word = word_of(records_.connections()[i]), type = word >> kTypeAt & kByte;
-        faults->note((type > kTypes) | (word >> kFlatnessAt > kFlatnesses), "unknown type or flatness");
-        faults->note((word >> kSide1At & kByte) >= most_sides, "its second node has no such side");
-        types += uint64_t{1} << (type & kTypes) * kPerCount;
-      });
-      if (status != FDCG_OK) return status;
+      c = end - first < kMostAtOnce ? end : first + kMostAtOnce;
+      for (uint64_t i = first; i < c; ++i) {
+        const uint64_t word = word_of(records_.connections()[i]);
+        any |= word;
+        pairs |= word & word >> 1;
+        types += uint64_t{1} << (word >> kTypeAt & FDCG_BOUNDARY) * kPerCount;
+      }
+      if (((any & higher) | (pairs & both)) != 0) {
+        return for_all(first, c, "connection", error_, [&](uint32_t i, auto* faults) {
+          const fdcg_connection& connection = records_.connections()[i];
+          faults->note((connection.type > FDCG_BOUNDARY) | (connection.flatness > FDCG_FLAT_ANGLE), "unknown type or flatness");
+          faults->note(connection.side[1] >= most_sides, "its second node has no such side");
+        });
+      }
       for (uint64_t type = 0; type < 4; ++type)
-        part_->types[type] += types >> type * kPerCount & (kNode >> kPerCount);
+        part_->types[type] += types >> type * kPerCount & kMostAtOnce;
     }
     return FDCG_OK;
   }
@@ -279,10 +287,11 @@ class SafeChunk {
     const uint64_t first = chunk_.first_of(header_.connection_count), end = chunk_.end_of(header_.connection_count);
     const auto numbers = [this](uint64_t c) { return static_cast<const Real*>(records_.edges()[c].direction); };
     UnitCheck<Real> check(0, largest_offset_);
-    for (uint64_t c = first; c < end; c += 2) {
+    for (uint64_t c = first; c + 1 < end; c += 2) {
       prefetch(numbers(c + (end - first)));
-      check.look_at(numbers(c), numbers(c + 1 < end ? c + 1 : c));
+      check.look_at(numbers(c), numbers(c + 1));
     }
+    if (first < end) check.look_at(numbers(end - 1), numbers(end - 1));
     if (check.holds()) return FDCG_OK;
     return for_all(first, end, "edge", error_, [&](uint32_t c, auto* faults) {
       UnitCheck<Real> one(0, largest_offset_);
@@ -297,25 +306,28 @@ class SafeChunk {
       low[k] = header_.bounds_min[k] > -header_.extent ? header_.bounds_min[k] : -header_.extent;
       high[k] = header_.bounds_max[k] < header_.extent ? header_.bounds_max[k] : header_.extent;
     }
-    uint64_t busy_corners = 0;
-    const fdcg_status status = for_mine(header_.corner_count, "corner", [&](uint32_t v, auto* faults) {
+    const auto fault_of = [&](uint32_t v) -> const char* {
       const auto& corner = records_.corners()[v];
-      bool is_inside = true;
-      for (int k = 0; k < 3; ++k)
-        is_inside &= (double{corner.point[k]} >= low[k]) & (double{corner.point[k]} <= high[k]);
-      faults->note(!is_inside, "outside the bounds");
+#pragma GCC unroll 3
+      for (int k = 0; k < 3; ++k) {
+        if (!(double{corner.point[k]} >= low[k]) || !(double{corner.point[k]} <= high[k])) return "outside the bounds";
+      }
       const uint32_t count = corner.fan & ~FDCG_CORNER_OPEN;
       if (__builtin_expect(count == 0, false)) {
-        ++busy_corners;
+        ++part_->busy_corners;
         const bool is_busy = corner.first < header_.busy_count && raw_.busy_corners[corner.first].corner == v;
-        return faults->note(!is_busy || corner.side != 0, "no busy corner of this number");
+        return is_busy && corner.side == 0 ? nullptr : "no busy corner of this number";
       }
-      faults->note((count < 2) | (count > FDCG_BUSY_FAN) | (count > header_.largest_fan), "fan out of range");
+      if (count < 2 || count > FDCG_BUSY_FAN || count > header_.largest_fan) return "fan out of range";
       const bool is_node = corner.first < header_.node_count;
-      faults->note(!is_node || corner.side >= side_count_of(corner.first), "fan does not start here");
-    });
-    part_->busy_corners += busy_corners;
-    return status;
+      return is_node && corner.side < side_count_of(corner.first) ? nullptr : "fan does not start here";
+    };
+    const uint64_t end = chunk_.end_of(header_.corner_count);
+    for (uint64_t v = chunk_.first_of(header_.corner_count); v < end; ++v) {
+      if (const char* const what = fault_of(static_cast<uint32_t>(v)); what != nullptr)
+        return refuse_record(error_, "corner", v, what);
+    }
+    return FDCG_OK;
   }
 
   // Their fans and trees follow one another and fill their sections.
