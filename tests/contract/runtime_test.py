@@ -14,8 +14,9 @@ CC = os.environ["FDCG_CC"]
 NM = os.environ["FDCG_NM"]
 C_FLAGS = ["-std=c11", "-pedantic", "-Wall", "-Wextra", "-Werror", "-I", str(ROOT / "runtime" / "include")]
 
-# What a C compiler may call on its own account; anything else that the library does not define itself stands out.
-COMPILER_CALLS = {"memcpy", "memset", "memmove", "memcmp", "_GLOBAL_OFFSET_TABLE_"}
+# What a C compiler may call on its own account, and where its library keeps what the processor has; anything else that the
+# library does not define itself stands out.
+COMPILER_CALLS = {"memcpy", "memset", "memmove", "memcmp", "_GLOBAL_OFFSET_TABLE_", "__cpu_model"}
 PLATFORM_CALLS = {"madvise", "mprotect", "read", "sysconf", "open", "open64", "close", "fstat", "fstat64", "mmap", "mmap64", "munmap", "__errno_location"}
 
 
