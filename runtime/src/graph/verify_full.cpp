@@ -83,70 +83,73 @@ class FullChunk {
     const size_t bytes = graph_.block_bytes();
     const uint64_t ahead =
         (end - chunk_.first_of(header_.node_count)) * bytes;  // to the next chunk, which memory sends meanwhile
-    bool is_wrong = false;
     for (uint64_t n = chunk_.first_of(header_.node_count); n < end;) {
       const auto leaf = static_cast<uint32_t>(n / FDCG_LEAF_NODES);
       const uint64_t leaf_end = (uint64_t{leaf} + 1) * FDCG_LEAF_NODES, last = leaf_end < end ? leaf_end : end;
-      Vec3<Real> low = graph_.corner_point(sides_of(n, bytes)[0].corner), high = low;
+      Vec3<Real> low = graph_.corner_point(sides_of(n)[0].corner), high = low;
       for (; n < last; ++n) {
-        const fdcg_side* const sides = sides_of(n, bytes);
-        __builtin_prefetch(reinterpret_cast<const unsigned char*>(sides) + ahead, 0, 2);
+        const fdcg_side* const sides = sides_of(n);
+        const unsigned char* const next = reinterpret_cast<const unsigned char*>(sides) + ahead;
+        __builtin_prefetch(next, 0, 2);
+        __builtin_prefetch(next + kSides * sizeof(fdcg_side), 0, 2);
+        const uint32_t least_across[2] = {static_cast<uint32_t>(n) + 1, 0};  // by which of its connection's sides it is
+#pragma GCC unroll 3
         for (uint32_t k = 0; k < kSides; ++k) {
-          const Vec3<Real> p = graph_.corner_point(sides[k].corner);
-          low = {p.x < low.x ? p.x : low.x, p.y < low.y ? p.y : low.y, p.z < low.z ? p.z : low.z};
-          high = {p.x > high.x ? p.x : high.x, p.y > high.y ? p.y : high.y, p.z > high.z ? p.z : high.z};
-          is_wrong |= (sides[k].corner == sides[k + 1 < kSides ? k + 1 : 0].corner) |
-                      (((sides[k].link & 1) == 0) & (sides[k].across <= n));
-          if (sides[k].across == FDCG_NONE) is_wrong |= graph_.connections()[sides[k].link >> 1].side[1] != 0;
+          const fdcg_side& side = sides[k];
+          const Vec3<Real> p = graph_.corner_point(side.corner);
+          low = {low.x < p.x ? low.x : p.x, low.y < p.y ? low.y : p.y, low.z < p.z ? low.z : p.z};
+          high = {high.x > p.x ? high.x : p.x, high.y > p.y ? high.y : p.y, high.z > p.z ? high.z : p.z};
+          if (side.corner == sides[k + 1 < kSides ? k + 1 : 0].corner || side.across < least_across[side.link & 1])
+            return false;
+          if (side.across == FDCG_NONE && graph_.connections()[side.link >> 1].side[1] != 0) return false;
         }
       }
       const LeafBox box = box_of(leaf);
       const Vec3<double> l = widen(low) * per_unit_, h = widen(high) * per_unit_;
-      is_wrong |= !((box.low[0] <= l.x) & (h.x <= box.high[0]) & (box.low[1] <= l.y) & (h.y <= box.high[1]) &
-                    (box.low[2] <= l.z) & (h.z <= box.high[2]));
+      if (!(box.low[0] <= l.x && h.x <= box.high[0] && box.low[1] <= l.y && h.y <= box.high[1] && box.low[2] <= l.z &&
+            h.z <= box.high[2]))
+        return false;
     }
-    return !is_wrong;
+    return true;
   }
-  const fdcg_side* sides_of(uint64_t n, size_t block_bytes) const {
-    return reinterpret_cast<const typename Records<Real>::Node*>(graph_.nodes() + n * block_bytes)->sides;
+  // Of triangles of one size.
+  [[nodiscard]] const fdcg_side* sides_of(uint64_t n) const {
+    return reinterpret_cast<const typename Records<Real>::Node*>(graph_.nodes() + n * graph_.block_bytes())->sides;
   }
 
   // Around an ordinary corner, as the step will go.
   struct FanWalk {
-    uint32_t corner, first_node, first_side;
-    uint32_t node, side, faces;
-    bool is_open, is_done, is_wrong;
+    uint32_t corner, node, faces;
+    bool is_open, is_wrong;
+    const fdcg_side* first;     // starts at the corner, in the first node
+    const fdcg_side* incoming;  // ends there, in the node; null: the walk is over
   };
   static constexpr uint32_t kWalks = 8;  // at once, so that their cache misses overlap
 
-  [[gnu::noinline]] fdcg_status corners() {
+  [[nodiscard]] fdcg_status corners() {
+    return are_triangles_ ? corners_of<true>() : corners_of<false>();
+  }
+
+  template <bool kAreTriangles>
+  [[gnu::noinline]] fdcg_status corners_of() {
     const uint64_t end = chunk_.end_of(header_.corner_count);
-    uint64_t v = chunk_.first_of(header_.corner_count);
-    while (v < end) {
+    for (uint64_t v = chunk_.first_of(header_.corner_count); v < end;) {
       FanWalk walks[kWalks];
       uint32_t count = 0;
       for (; v < end && count < kWalks; ++v) {
-        const auto corner = graph_.corner(static_cast<uint32_t>(v));
-        const char* what = nullptr;
-        if (corner.is_busy()) {
-          what = busy_fan(static_cast<uint32_t>(v));
-        } else {
-          what = start_walk(static_cast<uint32_t>(v), &walks[count++]);
-        }
+        const auto corner = static_cast<uint32_t>(v);
+        const char* const what = graph_.corner(corner).is_busy() ? busy_fan(corner) : start_walk(corner, &walks[count++]);
         if (what != nullptr) return refuse_record(error_, "corner", v, what);
       }
-      if (are_triangles_) {
-        walk_all<true>(walks, count);
-      } else {
-        walk_all<false>(walks, count);
-      }
+      walk_all<kAreTriangles>(walks, count);
       for (uint32_t i = 0; i < count; ++i) {
-        const auto corner = graph_.corner(walks[i].corner);
-        const bool is_right = walks[i].is_done && !walks[i].is_wrong && walks[i].is_open == corner.is_open() &&
-                              walks[i].faces + (walks[i].is_open ? 1u : 0u) == corner.walked_count();
+        const FanWalk& walk = walks[i];
+        const auto corner = graph_.corner(walk.corner);
+        const bool is_right = walk.incoming == nullptr && !walk.is_wrong && walk.is_open == corner.is_open() &&
+                              walk.faces + (walk.is_open ? 1u : 0u) == corner.walked_count();
         if (!is_right)
-          return refuse_record(error_, "corner", walks[i].corner, "fan does not lead around it in as many steps as it says");
-        part_->faces += walks[i].faces;
+          return refuse_record(error_, "corner", walk.corner, "fan does not lead around it in as many steps as it says");
+        part_->faces += walk.faces;
       }
     }
     return FDCG_OK;
@@ -155,46 +158,40 @@ class FullChunk {
   const char* start_walk(uint32_t v, FanWalk* walk) const {
     const auto corner = graph_.corner(v);
     const uint32_t n = corner.first_node(), k = corner.first_side();
-    if (graph_.node(n).corner(k) != v) return "fan does not start here";
-    if (corner.is_open() != (graph_.node(n).across(k) == FDCG_NONE)) return "fan is open at the wrong place";
-    *walk = {v, n, k, n, k, 1, false, false, false};
+    const Node node = graph_.node(n);
+    if (node.corner(k) != v) return "fan does not start here";
+    if (corner.is_open() != (node.across(k) == FDCG_NONE)) return "fan is open at the wrong place";
+    *walk = {v, n, 0, false, false, &node.side(k), &node.side(node.previous(k))};
     return nullptr;
-  }
-
-  template <bool kAreTriangles>
-  const fdcg_side* sides_of(uint32_t n) const {
-    if constexpr (kAreTriangles) return sides_of(n, graph_.block_bytes());
-    return &graph_.node(n).side(0);
-  }
-  // The side that comes in to where side k starts.
-  template <bool kAreTriangles>
-  uint32_t before(uint32_t n, uint32_t k) const {
-    if constexpr (kAreTriangles) return 0x010002u >> (8 * k) & 0xFF;  // 2, 0, 1: a branch could not be predicted
-    return graph_.node(n).previous(k);
   }
 
   // From side to side: back to the start, or to the border.
   template <bool kAreTriangles>
-  [[gnu::noinline]] void walk_all(FanWalk* walks, uint32_t count) const {
+  void walk_all(FanWalk* walks, uint32_t count) const {
+    static constexpr uint8_t kPrevious[kSides] = {2, 0, 1};
     uint32_t walking = count;
-    for (uint32_t step = 0; walking > 0 && step < FDCG_BUSY_FAN; ++step) {
+    for (uint32_t step = 1; walking > 0 && step <= FDCG_BUSY_FAN; ++step) {
       for (uint32_t i = 0; i < count; ++i) {
         FanWalk& walk = walks[i];
-        if (walk.is_done) continue;
-        const fdcg_side& incoming = sides_of<kAreTriangles>(walk.node)[before<kAreTriangles>(walk.node, walk.side)];
-        const uint32_t from = walk.node;
-        walk.node = incoming.across;
-        walk.is_open = walk.node == FDCG_NONE;
+        if (walk.incoming == nullptr) continue;
+        const fdcg_side incoming = *walk.incoming;
+        walk.is_open = incoming.across == FDCG_NONE;
         if (!walk.is_open) {
-          const fdcg_side* const sides = sides_of<kAreTriangles>(walk.node);
-          __builtin_prefetch(sides);
-          walk.side = graph_.connections()[incoming.link >> 1].side[1 - (incoming.link & 1)];
-          const fdcg_side& twin = sides[walk.side];
-          walk.is_wrong |= (twin.link != (incoming.link ^ 1u)) | (twin.across != from) | (twin.corner != walk.corner);
+          const uint32_t link = incoming.link ^ 1;
+          const fdcg_side* const sides = kAreTriangles ? sides_of(incoming.across) : &graph_.node(incoming.across).side(0);
+          const uint32_t k = kAreTriangles ? uint32_t{sides[1].link == link} + 2 * uint32_t{sides[2].link == link}
+                                           : graph_.connections()[link >> 1].side[link & 1];
+          const fdcg_side& twin = sides[k];
+          walk.is_wrong = twin.link != link || twin.across != walk.node || twin.corner != walk.corner;
+          if (!walk.is_wrong && &twin != walk.first) {
+            walk.node = incoming.across;
+            walk.incoming = &sides[kAreTriangles ? kPrevious[k] : graph_.node(incoming.across).previous(k)];
+            continue;
+          }
         }
-        walk.is_done = walk.is_open || walk.is_wrong || (walk.node == walk.first_node && walk.side == walk.first_side);
-        walking -= walk.is_done ? 1u : 0u;
-        walk.faces += walk.is_done ? 0u : 1u;
+        walk.incoming = nullptr;
+        walk.faces = step;
+        --walking;
       }
     }
   }
