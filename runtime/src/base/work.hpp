@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The work budgets of a step, by which it ends in bounded time on any mesh: units of some 15 instructions. The rules that move
+// The work budgets of a step, by which it ends in bounded time on any mesh: units of 15 to 40 instructions. The rules that move
 // the god-object over the surface have one budget, the sweeps through free space another. The step continues until one is
 // spent, and then finishes the current piece of work (contact-model BOUND-1 to BOUND-3).
 #pragma once
@@ -14,9 +14,9 @@ namespace fdcg {
 #endif
 inline constexpr uint32_t kRuleWork = FDCG_RULE_WORK;
 
-// Of one step, all its sweeps together: some 30,000 instructions.
+// Of one step, all its sweeps together: some 25,000 instructions, past busy corners 60,000.
 #ifndef FDCG_SWEEP_WORK
-#define FDCG_SWEEP_WORK 1500
+#define FDCG_SWEEP_WORK 1700
 #endif
 inline constexpr uint32_t kSweepWork = FDCG_SWEEP_WORK;
 
@@ -27,13 +27,13 @@ inline constexpr uint32_t kSweepWork = FDCG_SWEEP_WORK;
 #endif
 inline constexpr uint32_t kUpkeepWork = FDCG_UPKEEP_WORK;
 
-inline constexpr uint32_t kBoxWork = 30;          // eight boxes tested, and put in order
+inline constexpr uint32_t kBoxWork = 16;          // eight boxes tested, and put in order
 inline constexpr uint32_t kLeafWork = 4;          // a leaf taken up, besides its nodes
 inline constexpr uint32_t kGlanceWork = 3;        // one node fetched, both ends of the way against its plane
 inline constexpr uint32_t kNodeWork = 5;          // ... and where that does not decide
 inline constexpr uint32_t kBesideWork = 1;        // ... both ends of the way against one of its sides
 inline constexpr uint32_t kNearPlaneWork = 18;    // ... one end so near that its side is found from the corners
-inline constexpr uint32_t kOrientationWork = 9;   // one side's edge against the way, where rounding cannot matter
+inline constexpr uint32_t kOrientationWork = 6;   // one side's edge against the way, where rounding cannot matter
 inline constexpr uint32_t kPairsWork = 30;        // ... and where it does: 450 instructions
 inline constexpr uint32_t kExactWork = 70;        // ... additional within 2^-98 of the size of a plane: 1,050
 inline constexpr uint32_t kLongExactWork = 290;   // ... with coordinates of very different sizes: 4,300
