@@ -38,25 +38,30 @@ inline Real node_distance(const GraphView<Geometry>& graph, NodeRef<Geometry> no
   return beside > 0 ? root(from_plane * from_plane + beside * beside) : from_plane;
 }
 
-// Bit for bit. The offsets tell nearly always; of four comparisons a compiler makes all, each time.
-template <class Real>
-inline bool are_one(const Plane<Real>& a, const Plane<Real>& b) {
-  return a.offset == b.offset && memcmp(&a.normal, &b.normal, sizeof a.normal) == 0;
+// Of two planes with one offset.
+template <class Geometry>
+[[gnu::noinline, gnu::cold]] bool have_one_normal(NodeRef<Geometry> a, NodeRef<Geometry> b) {
+  const auto n = a.normal(), m = b.normal();
+  return n.x == m.x && n.y == m.y && n.z == m.z;
 }
 
 // The nodes nearest to a place, as many as a clear ball may have, and how near the next one is. Of nodes of one plane, bit for
 // bit, one stands for all: a way that surely passes it passes all of them.
-template <class Real>
+template <class Geometry>
 class NearestNodes {
+  using Real = typename Geometry::Real;
+
  public:
-  explicit NearestNodes(Real reach) : limit_(reach) {}
+  NearestNodes(const GraphView<Geometry>& graph, Real reach) : graph_(graph), limit_(reach) {}
 
   // What is no nearer counts no longer.
   [[nodiscard]] Real limit() const { return limit_; }
   void block(Real distance) { limit_ = distance < limit_ ? distance : limit_; }
-  void add(uint32_t node, Plane<Real> plane, Real distance) {
+  void add(uint32_t node, Real distance) {
+    const NodeRef<Geometry> added = graph_.node(node);
+    const Real offset = added.plane().offset;
     uint32_t at = 0;
-    while (at < count_ && !are_one(plane, plane_[at]))
+    while (at < count_ && !(offset == offset_[at] && have_one_normal(added, graph_.node(node_[at]))))
       ++at;
     if (at < count_) {
       stands_for_several_ = true;
@@ -71,7 +76,7 @@ class NearestNodes {
       ++count_;
     }
     node_[at] = node;
-    plane_[at] = plane;
+    offset_[at] = offset;
     distance_[at] = distance;
   }
   // Stores those that are nearer than `radius`.
@@ -86,11 +91,12 @@ class NearestNodes {
   }
 
  private:
+  const GraphView<Geometry>& graph_;
   Real limit_;
   uint32_t count_ = 0;
   bool stands_for_several_ = false;
   uint32_t node_[kMostNear];
-  Plane<Real> plane_[kMostNear];
+  Real offset_[kMostNear];  // of their planes
   Real distance_[kMostNear];
 };
 
@@ -98,7 +104,7 @@ class NearestNodes {
 // corner and none of its faces (contact-model FREE-8).
 template <class Geometry, class Real = typename Geometry::Real>
 inline void look_at_leaf(const GraphView<Geometry>& graph, uint32_t leaf, Vec3<Real> at, Real least,
-                         NearestNodes<Real>* nearest) {
+                         NearestNodes<Geometry>* nearest) {
   const uint32_t first = leaf * FDCG_LEAF_NODES, end = first + FDCG_LEAF_NODES;
   for (uint32_t n = first; n < end && n < graph.header()->node_count; ++n) {
     const Real beside = node_distance(graph, graph.node(n), at, nearest->limit()), distance = beside > least ? beside : least;
@@ -109,7 +115,7 @@ inline void look_at_leaf(const GraphView<Geometry>& graph, uint32_t leaf, Vec3<R
         const uint32_t corner = graph.busy_corners()[graph.fan_runs()[run].busy].corner;
         nearest->block(norm(graph.corner_point(corner) - at) - static_cast<Real>(graph.max_deviation()));
       }
-      nearest->add(n, graph.node(n).plane(), distance);
+      nearest->add(n, distance);
     } else {
       nearest->block(distance);
     }
@@ -151,7 +157,7 @@ template <class Geometry, class Real = typename Geometry::Real>
   const float least = static_cast<float>(length + margin), too_near2 = least * least;
   constexpr float kOpened = 0.25F;  // what is not nearer than half the limit so far is not opened but taken as it is
   float limit2 = static_cast<float>(reach * reach), clear2 = limit2;
-  NearestNodes<Real> nearest(reach * unit);
+  NearestNodes<Geometry> nearest(graph, reach * unit);
   const BoxTree tree(graph.header()->node_count);
   WaitingBoxes waiting(tree);
   for (int visits = 0; !waiting.is_empty() && clear2 > too_near2;) {

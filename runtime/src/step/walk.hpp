@@ -24,8 +24,8 @@ struct Walk {
   using Real = typename Geometry::Real;
 
   // Number by number (by_parts), and no more than is said below.
-  Walk(const GraphView<Geometry>& in, const PlainFriction<Real>& laws, FrictionTerms* terms, const Vec3<Real>& to,
-       Real to_bound, const Vec3<Real>& from, Feature on, Feature sits, uint32_t work)
+  [[gnu::noinline]] Walk(const GraphView<Geometry>& in, const PlainFriction<Real>& laws, FrictionTerms* terms,
+                         const Vec3<Real>& to, Real to_bound, const Vec3<Real>& from, Feature on, Feature sits, uint32_t work)
       : graph(in), hip(by_parts(to)), hip_bound(to_bound), god_object(by_parts(from)), active(on), seat(sits), work_left(work) {
     friction.mu_static = laws.mu_static;
     friction.mu_dynamic = laws.mu_dynamic;

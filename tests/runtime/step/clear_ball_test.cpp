@@ -95,8 +95,8 @@ Tally compare(const PolygonSoup& soup, Precision precision, bool merges, std::ui
   return tally;
 }
 
-// The graph's nodes as polygons, but for those that the contact's clear ball names as reaching into it, each for all of its
-// plane.
+// The graph's nodes as polygons, but for those that the contact's clear ball names as reaching into it: themselves where they
+// are all, else each for all of its plane.
 template <class Real>
 PolygonSoup other_nodes(const fdcg_graph& raw, const fdcg_contact& contact) {
   const fdcg::GraphView<fdcg::RigidGeometry<Real>> graph(raw);
@@ -110,8 +110,12 @@ PolygonSoup other_nodes(const fdcg_graph& raw, const fdcg_contact& contact) {
   }
   soup.face_first.assign(1, 0);
   for (std::uint32_t n = 0; n < raw.header->node_count; ++n) {
-    const auto plane = graph.node(n).plane();
-    if (std::any_of(first, end, [&](std::uint32_t named) { return fdcg::are_one(plane, graph.node(named).plane()); })) continue;
+    const auto is_named = [&](std::uint32_t named) {
+      const auto node = graph.node(n), other = graph.node(named);
+      return n == named || (inner.clear_ball.are_all == 0 && node.plane().offset == other.plane().offset &&
+                            fdcg::have_one_normal(node, other));
+    };
+    if (std::any_of(first, end, is_named)) continue;
     for (std::uint32_t k = 0; k < graph.node(n).side_count(); ++k)
       soup.corners.push_back(graph.node(n).corner(k));
     soup.face_first.push_back(static_cast<std::uint32_t>(soup.corners.size()));
