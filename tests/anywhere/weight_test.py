@@ -27,7 +27,7 @@ SUPPORT = {"heights_check", "heights_relief", "relief", "relief_check", "waves_r
 KB = 1024
 X86_BOTH = {"bar": 48 * KB, "limit": 182_800}
 X86_F64 = {"bar": 48 * KB, "limit": 108_000}
-M7_F32 = {"bar": 20 * KB, "limit": 48_900}
+M7_F32 = {"bar": 20 * KB, "limit": 49_000}
 M7_F32_TERMS = {"bar": 20 * KB, "limit": 66_500}
 
 COMPILER_CALLS = {"memcpy", "memset", "memmove", "memcmp"}
@@ -99,12 +99,12 @@ class Parts(WeightCase):
     # program, what it is built with: the bar, and the limit, which a change may not pass
     FACETS = ("-DFDCG_WITH_SHADING=OFF",)
     LEAN = (*FACETS, "-DFDCG_WITH_FAST_EDGES=OFF")
-    X86_GRAPHS = (("one_graph", "f64-lean", (*F64, *LEAN), 64 * KB, 66_000),
+    X86_GRAPHS = (("one_graph", "f64-lean", (*F64, *LEAN), 64 * KB, 64 * KB),
                   ("one_graph", "both-lean", (*NO_WORDS, *LEAN), 96 * KB, 116_000),
                   ("one_graph", "f64", (*F64, *FACETS), 64 * KB, 68_600),
                   ("one_graph", "both", (*NO_WORDS, *FACETS), 96 * KB, 121_600),
                   ("one_graph", "f64-shaded", F64, 64 * KB, 92_300), ("one_graph", "both-shaded", NO_WORDS, 96 * KB, 162_300))
-    M7_GRAPHS = (("one_graph", "f32", (*F32, "-DFDCG_WITH_FRICTION_TERMS=OFF"), 22 * KB, 40_500),
+    M7_GRAPHS = (("one_graph", "f32", (*F32, "-DFDCG_WITH_FRICTION_TERMS=OFF"), 22 * KB, 40_700),
                  ("one_graph", "f32-plain", (*F32, *PLAIN), 22 * KB, 29_800),
                  ("one_scene", "f32-plain", (*F32, *PLAIN), 32 * KB, 39_800))
 

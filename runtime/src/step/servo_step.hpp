@@ -237,10 +237,8 @@ inline constexpr bool kHasEdgeHops = FDCG_WITH_FAST_EDGES&& kHasHops<Geometry>;
 // Whether a tick on a face has a short way of its own; a library built for size has one way for all.
 #ifdef __OPTIMIZE_SIZE__
 inline constexpr bool kGlances = false;
-#define FDCG_STEP_ON inline
 #else
 inline constexpr bool kGlances = true;
-#define FDCG_STEP_ON [[gnu::noinline]]
 #endif
 
 // A HIP that is no number, or too far away for the step's arithmetic.
