@@ -92,8 +92,8 @@ class NodeEntry {
   FirstHit<Real> best_;
 
   // On which side of the line through two corners of a node the way passes: 1 on the outer, where the node's loop runs from the
-  // first to the second; 0 where the two meet exactly. What two neighbours say of their edge are exact
-  // opposites: so are the rounded products.
+  // first to the second; 0 where the two meet exactly. What two neighbours say of their edge are exact opposites: so are the
+  // rounded products.
   [[nodiscard, gnu::noinline, gnu::cold]] int exact_orientation(NodeRef<Geometry> node, uint32_t start, uint32_t end) const {
     return orient3d_sign(widen(from_), widen(to_), widen(graph_.corner_point(node.corner(start))),
                          widen(graph_.corner_point(node.corner(end))), work_left_);

@@ -98,8 +98,8 @@ template <class Geometry, class Real = typename Geometry::Real>
 // contact-model TICK-5: rounding hands the god-object around a corner. The corner, whose rule is exact, decides if it has not
 // been asked; whatever the way here was, or the next tick, which knows nothing of it, would decide otherwise. If it has, and
 // a face there has sent the god-object back, the edge is asked by which the face did so: at the tip of a long body the corner's
-// edges lead as far but for rounding, and so edge by edge the one is reached that holds. An edge is not asked that
-// would let go a HIP behind and over one of its faces: the corner has found that it is inside. False: neither is left.
+// edges lead as far but for rounding, and so edge by edge the one is reached that holds. An edge is not asked that would let
+// go a HIP behind and over one of its faces: the corner has found that it is inside. False: neither is left.
 template <class Geometry, class Real = typename Geometry::Real>
 [[gnu::noinline, gnu::cold]] bool goes_on_at_corner(Walk<Geometry>& walk, Trail<Geometry>* trail) {
   if (walk.rim == FDCG_NONE || FDCG_MUTANT("circle-at-corner")) return false;

@@ -30,7 +30,7 @@ template <class Geometry>
 struct Walk {
   using Real = typename Geometry::Real;
 
-  // Number by number (by_parts), and no more than is said below.
+  // Number by number (by_parts); what is not given here has its value below.
   FDCG_STEP_ON Walk(const GraphView<Geometry>& in, const PlainFriction<Real>& laws, FrictionTerms* terms, const Vec3<Real>& to,
                     Real to_bound, const Vec3<Real>& from, Feature on, Feature sits, uint32_t work)
       : graph(in), hip(by_parts(to)), hip_bound(to_bound), god_object(by_parts(from)), active(on), seat(sits), work_left(work) {
