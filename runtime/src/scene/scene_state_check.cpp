@@ -160,7 +160,7 @@ struct FeatureCounts {
 // Whether the nodes that reach into its clear ball are there. A field that is kept is made anew.
 bool has_sound_ball(const fdcg_contact& contact, uint32_t nodes) {
   const ContactInternals& inner = internals_of(contact);
-  if (inner.clear_ball.near_count > kMostNear || inner.clear_ball.are_all > 1) return false;
+  if (inner.clear_ball.near_count > kMostNear || inner.clear_ball.lists_all > 1) return false;
   if (inner.clear_ball.near_count != 0 && (contact.state != FDCG_FREE || inner.near.of_node != 0)) return false;
   for (uint32_t i = 0; i < inner.clear_ball.near_count; ++i) {
     if (inner.near.node[i] >= nodes) return false;

@@ -87,7 +87,7 @@ class NearestNodes {
       if (distance_[i] < radius) near->node[count++] = node_[i];
     }
     ball->near_count = count;
-    ball->are_all = stands_for_several_ ? 0 : 1;
+    ball->lists_all = stands_for_several_ ? 0 : 1;
   }
 
  private:
@@ -147,7 +147,7 @@ template <class Geometry, class Real = typename Geometry::Real>
   const Vec3<Real> p = at * per_unit;
   const Real size = norm1(p);
   ball->near_count = 0;
-  ball->are_all = 1;
+  ball->lists_all = 1;
   if (size > kFar) return (size / 3 - kTreeReach) * kClearShare<Real> * unit;
   const Real margin = kClearMargins * tree_rounding<Real>(2 * size, 2 * size * RealLimits<Real>::kEpsilon);
   const Real length = way * per_unit;

@@ -33,7 +33,7 @@ struct ClearBall {
   uint16_t wait;        // ticks until the next search for one
   uint16_t next_wait;   // how long to wait if that search finds none
   uint16_t near_count;  // of the nodes that reach into it
-  uint16_t are_all;     // 1: there are no others; 0: one may stand for several in one plane
+  uint16_t lists_all;   // 1: all of them are listed; 0: one may stand for several in one plane
 };
 
 // The field of normals (normal_field.hpp) of the face that a shaded contact is on. It follows from the graph: what is lost of
@@ -45,7 +45,7 @@ struct KeptField {
 
 inline void end_clear_ball(ClearBall* ball) {
   ball->radius2 = 0;
-  ball->near_count = ball->are_all = 0;
+  ball->near_count = ball->lists_all = 0;
 }
 
 // The nodes that reach into the clear ball, in the bytes of the field: no contact in free space has one.

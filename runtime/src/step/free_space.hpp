@@ -154,9 +154,9 @@ inline uint32_t sweep_with_loan(Walk<Geometry>& walk, Feature left, const Vec3<R
   walk.god_object = from;
   Sweep<Geometry> sweep(walk.graph, left == kFree ? from : stood, from, to, left, &space->work_left);
   FirstHit<Real> first;
-  const bool is_near = ball->radius2 > 0 && ball->are_all != 0;  // in the ball, which has left what is not near out
-  if (is_near) sweep.run_near(space->inner->near.node, ball->near_count, &first);
-  if (is_near || sweep.run(&first)) {
+  const bool is_in_ball = ball->radius2 > 0 && ball->lists_all != 0;  // nothing but what it lists can be met
+  if (is_in_ball) sweep.run_near(space->inner->near.node, ball->near_count, &first);
+  if (is_in_ball || sweep.run(&first)) {
     arrive(walk, sweep, to, first);
     if (walk.active == kFree) {
       carried->stalled_sweeps = 0;

@@ -280,8 +280,9 @@ FDCG_HOT void end_at(const fdcg_header& header, const fdcg_params& params, const
   store(god_object, contact->god_object);
 }
 template <class Real>
-FDCG_STEP_ON void end_short_way_at(const fdcg_header& header, const fdcg_params& params, const Vec3<Real>& hip,
-                                   const Vec3<Real>& god_object, bool is_slipping, fdcg_contact* contact, fdcg_result* result) {
+FDCG_OUTLINED void end_short_way_at(const fdcg_header& header, const fdcg_params& params, const Vec3<Real>& hip,
+                                    const Vec3<Real>& god_object, bool is_slipping, fdcg_contact* contact,
+                                    fdcg_result* result) {
   end_at(header, params, hip, by_parts(god_object), is_slipping, contact, result);
 }
 
@@ -323,8 +324,8 @@ inline bool hops_off_edge(const GraphView<Geometry>& graph, const Vec3<Real>& hi
 // The rest of a tick: from a face that the god-object may leave, or on which it must be asked again, with what has been found
 // there; from an edge that a face, `pulling`, pulls it off; or, `tick` null and no such face, from elsewhere.
 template <class Geometry, class Real = typename Geometry::Real>
-FDCG_STEP_ON void step_on(const fdcg_graph& raw, const fdcg_params& params, const Vec3<Real>& hip, const FaceTick<Real>* tick,
-                          uint32_t pulling, fdcg_contact* contact, fdcg_result* result) {
+FDCG_OUTLINED void step_on(const fdcg_graph& raw, const fdcg_params& params, const Vec3<Real>& hip, const FaceTick<Real>* tick,
+                           uint32_t pulling, fdcg_contact* contact, fdcg_result* result) {
   const GraphView<Geometry> graph(raw);
   const Real bound = plane_rounding_bound(graph, hip);
   bool has_move = contact->state == FDCG_FACE;

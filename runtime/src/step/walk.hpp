@@ -9,11 +9,11 @@
 #include "graph/graph_view.hpp"
 #include "step/friction.hpp"
 
-// A function of its own; but a library built for size has one way for all.
+// Of functions that stay apart from their callers; but a library built for size has one way for all.
 #ifdef __OPTIMIZE_SIZE__
-#define FDCG_STEP_ON inline
+#define FDCG_OUTLINED inline
 #else
-#define FDCG_STEP_ON [[gnu::noinline]]
+#define FDCG_OUTLINED [[gnu::noinline]]
 #endif
 
 namespace fdcg {
@@ -31,8 +31,8 @@ struct Walk {
   using Real = typename Geometry::Real;
 
   // Number by number (by_parts); what is not given here has its value below.
-  FDCG_STEP_ON Walk(const GraphView<Geometry>& in, const PlainFriction<Real>& laws, FrictionTerms* terms, const Vec3<Real>& to,
-                    Real to_bound, const Vec3<Real>& from, Feature on, Feature sits, uint32_t work)
+  FDCG_OUTLINED Walk(const GraphView<Geometry>& in, const PlainFriction<Real>& laws, FrictionTerms* terms, const Vec3<Real>& to,
+                     Real to_bound, const Vec3<Real>& from, Feature on, Feature sits, uint32_t work)
       : graph(in), hip(by_parts(to)), hip_bound(to_bound), god_object(by_parts(from)), active(on), seat(sits), work_left(work) {
     friction.mu_static = laws.mu_static;
     friction.mu_dynamic = laws.mu_dynamic;

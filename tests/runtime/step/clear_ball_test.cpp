@@ -88,7 +88,7 @@ Tally compare(const PolygonSoup& soup, Precision precision, bool merges, std::ui
     tally.free += is_free;
     tally.touching += !is_free;
     if (was_in_ball && !is_free && norm(fdcg::vec(with.state.hip) - fdcg::vec(ball.centre)) < std::sqrt(ball.radius2))
-      ++(ball.are_all != 0 ? tally.met_of_near : tally.met_of_all);
+      ++(ball.lists_all != 0 ? tally.met_of_near : tally.met_of_all);
     tally.near_nodes += was_in_ball && internals_of(with.state).clear_ball.near_count > 0;
     tally.in_ball += was_in_ball && internals_of(with.state).clear_ball.radius2 > 0;
   }
@@ -112,7 +112,7 @@ PolygonSoup other_nodes(const fdcg_graph& raw, const fdcg_contact& contact) {
   for (std::uint32_t n = 0; n < raw.header->node_count; ++n) {
     const auto is_named = [&](std::uint32_t named) {
       const auto node = graph.node(n), other = graph.node(named);
-      return n == named || (inner.clear_ball.are_all == 0 && node.plane().offset == other.plane().offset &&
+      return n == named || (inner.clear_ball.lists_all == 0 && node.plane().offset == other.plane().offset &&
                             fdcg::have_one_normal(node, other));
     };
     if (std::any_of(first, end, is_named)) continue;
