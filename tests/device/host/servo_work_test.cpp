@@ -109,9 +109,10 @@ Work own_work(int priority) {
 
 namespace {
 
-// What it takes to wake a thread that sleeps, and nothing else: on a virtual machine it may be most of a tick.
+// What it takes to wake a thread that sleeps, and nothing else: a yardstick of how dear the machine's system calls and cold
+// caches are just now. On a virtual machine beside busy ones it may be most of a tick.
 std::vector<std::int64_t> bare_wakes_ns(int priority) {
-  constexpr int kWakes = 1000;
+  constexpr int kWakes = 300;
   Event event;
   std::atomic<bool> ends{false};
   Running sleeper([&] {
@@ -142,23 +143,27 @@ std::vector<std::int64_t> bare_wakes_ns(int priority) {
 TEST_CASE("servo loop: its own work in a tick takes less than 10 us, log and snapshot included") {
   if (!can_count_thread_calls()) return;  // sanitizers make it slower
   constexpr std::int64_t kMostNs = 10'000;
+  constexpr double kBareWakeNs = 1000;  // of the idle machine, on which a tick took 2 us
   const bool is_idle =
-      std::getenv("FDCG_IDLE") != nullptr;  // the machine, but for this test: the 99th percentile is judged too
+      std::getenv("FDCG_IDLE") != nullptr;  // the machine, but for this test: no allowance, and the 99th percentile too
   const int priority = GENERATE(0, 80);
   bool is_within = false;
   for (int round = 0; round < 10 && !is_within; ++round) {  // other programs may have the caches
     const Work work = own_work(priority);
+    const std::vector<std::int64_t> bare_ns = bare_wakes_ns(priority);
+    const double slowness = is_idle ? 1 : std::clamp(static_cast<double>(quantile(bare_ns, 0.5)) / kBareWakeNs, 1.0, 3.0);
+    const auto most_ns = static_cast<std::int64_t>(slowness * static_cast<double>(kMostNs));
     std::vector<std::int64_t> rest_ns;
     for (std::size_t i = 0; i < work.all_ns.size(); ++i)
       rest_ns.push_back(work.all_ns[i] - work.wake_ns[i]);
     is_within =
-        quantile(priority == 0 ? work.all_ns : rest_ns, 0.5) < kMostNs && (!is_idle || quantile(rest_ns, 0.99) < kMostNs);
+        quantile(priority == 0 ? work.all_ns : rest_ns, 0.5) < most_ns && (!is_idle || quantile(rest_ns, 0.99) < kMostNs);
     WARN("priority " << priority << ": p50 " << quantile(rest_ns, 0.5) << " p99 " << quantile(rest_ns, 0.99)
                      << " ns; waking the writer p50 " << quantile(work.wake_ns, 0.5) << " p99 " << quantile(work.wake_ns, 0.99)
-                     << " ns; both p50 " << quantile(work.all_ns, 0.5) << " p99 " << quantile(work.all_ns, 0.99) << " ns");
+                     << " ns; both p50 " << quantile(work.all_ns, 0.5) << " p99 " << quantile(work.all_ns, 0.99)
+                     << " ns; a bare thread's wake p50 " << quantile(bare_ns, 0.5) << " p99 " << quantile(bare_ns, 0.99)
+                     << " ns; bound " << most_ns << " ns");
   }
-  const std::vector<std::int64_t> bare_ns = bare_wakes_ns(priority);
-  WARN("a bare thread's wake p50 " << quantile(bare_ns, 0.5) << " p99 " << quantile(bare_ns, 0.99) << " ns");
   CHECK(is_within);
 }
 
