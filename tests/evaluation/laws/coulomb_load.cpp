@@ -20,4 +20,16 @@ CoulombLoad coulomb_load(const ReferenceSurface<Wide>& surface, std::uint32_t st
   return {2 * dot(across, sum) / dot(sum, sum), std::abs(along), true};
 }
 
+Wide off_the_slip(const ReferenceSurface<Wide>& surface, std::uint32_t state, std::uint32_t feature, const WidePoint& force,
+                  const WidePoint& from, Wide load) {
+  const auto along = [&](const WidePoint& v) {
+    if (state == FDCG_EDGE) return surface.edges[feature].direction * dot(v, surface.edges[feature].direction);
+    const WidePoint& n = surface.faces[feature].normal;
+    return v - n * dot(v, n);
+  };
+  const WidePoint friction = along(force), slip = along(from);
+  const Wide way = length(slip);
+  return way > 0 ? length(friction - slip * (length(friction) / way)) / load : Wide(0);
+}
+
 }  // namespace fdcg::test

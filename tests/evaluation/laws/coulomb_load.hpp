@@ -28,4 +28,10 @@ struct CoulombLoad {
 CoulombLoad coulomb_load(const ReferenceSurface<Wide>& surface, std::uint32_t state, std::uint32_t feature,
                          const WidePoint& force, std::uint32_t edge_friction);
 
+// How far the friction on a face or a concave edge is from lying along the slip, as a share of the load that presses: from
+// where the god-object stood it goes straight to where it presses less, whatever seams are in the way. `from`: the HIP to where
+// it stood.
+Wide off_the_slip(const ReferenceSurface<Wide>& surface, std::uint32_t state, std::uint32_t feature, const WidePoint& force,
+                  const WidePoint& from, Wide load);
+
 }  // namespace fdcg::test

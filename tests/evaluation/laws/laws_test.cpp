@@ -53,6 +53,25 @@ TEST_CASE("a face bears the force along its normal and friction the rest, whiche
   }
 }
 
+TEST_CASE("friction that pulls beside the slip, or along it, is told from friction against it") {
+  const Ramp ramp({RampKind::face}, fdcg::bake::Precision::f64, 3);
+  const auto off = [&](double x, double y) {
+    return static_cast<double>(off_the_slip(ramp.surface(), FDCG_FACE, 0, placed(ramp, x, y, 2), placed(ramp, 6, -8, 2), 2));
+  };
+  CHECK(off(3, -4) < 1e-15);
+  CHECK(off(0, 0) < 1e-15);        // none at all
+  CHECK(off(-3, 4) == Approx(5));  // ten newtons off of two that press
+  CHECK(off(3 - 4e-12, -4 - 3e-12) == Approx(2.5e-12).epsilon(1e-3));
+  const Ramp groove({RampKind::groove, 60}, fdcg::bake::Precision::f64, 5);
+  const std::uint32_t edge = sharpest_concave_edge(groove.surface());
+  const auto along = [&](double x) {
+    return static_cast<double>(
+        off_the_slip(groove.surface(), FDCG_EDGE, edge, placed(groove, x, 0, 2), placed(groove, 3, 0, 2), 2));
+  };
+  CHECK(along(1) < 1e-15);
+  CHECK(along(-1) == Approx(1));
+}
+
 TEST_CASE("the walls of a groove bear by its opening, the paper's load is what lies across") {
   for (const double opening : {30.0, 60.0, 90.0, 150.0}) {
     const Ramp ramp({RampKind::groove, opening}, fdcg::bake::Precision::f64, 5);

@@ -60,8 +60,10 @@ const char* name_of(RampGraph graph) {
       return "plain";
     case RampGraph::compiled:
       return "compiled";
-    default:
+    case RampGraph::far_away:
       return "far away";
+    default:
+      return "derived";
   }
 }
 
@@ -76,6 +78,7 @@ Ramp::Ramp(const RampShape& shape, bake::Precision precision, std::uint64_t orie
     bake::CompileOptions options;
     options.precision = precision;
     options.jobs = 1;
+    options.merge = options.store_planes = graph != RampGraph::derived;
     compiled_ = std::make_unique<CompiledMesh>(turned, options);
   }
   surface_ = std::make_unique<ReferenceSurface<Wide>>(view());

@@ -36,9 +36,10 @@ std::vector<RampShape> ramp_shapes();
 enum class RampGraph {
   plain,     // a triangle a node: nothing is merged
   compiled,  // by the compiler, which merges
-  far_away   // the same, a million sizes from the origin
+  far_away,  // the same, a million sizes from the origin
+  derived    // nothing is merged, and planes are derived in the step: it has no short ways over edges there
 };
-constexpr RampGraph kRampGraphs[] = {RampGraph::plain, RampGraph::compiled, RampGraph::far_away};
+constexpr RampGraph kRampGraphs[] = {RampGraph::plain, RampGraph::compiled, RampGraph::far_away, RampGraph::derived};
 const char* name_of(RampGraph graph);
 
 // One of them in some orientation.

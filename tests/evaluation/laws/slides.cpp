@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Coulomb's law in motion: while the god-object slides, tangential over normal force is mu_d, whatever the stiffness, the speed
-// and the rate; while it sticks, at most mu_s.
+// and the rate, and on a plane, cut by seams or not, and in a groove it lies along the slip; while it sticks, at most mu_s.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -41,11 +41,12 @@ struct Motion {
 
 struct Tally {
   std::uint64_t ticks = 0, moved = 0, held = 0, wrong = 0, shallow = 0;
-  double worst_ratio_error = 0;
+  double worst_ratio_error = 0, worst_off_slip = 0;
 
   void add(const Tally& other) {
     ticks += other.ticks, moved += other.moved, held += other.held, wrong += other.wrong, shallow += other.shallow;
     worst_ratio_error = std::max(worst_ratio_error, other.worst_ratio_error);
+    worst_off_slip = std::max(worst_off_slip, other.worst_off_slip);
   }
 };
 
@@ -69,10 +70,16 @@ Hip above(const RampShape& shape, const Hip& below) {
   return {3 * below[0] / 2 + below[0], 3 * below[1] / 2 + below[1], below[2]};
 }
 
-void judge(const Ramp& ramp, std::uint32_t edge_friction, const fdcg_params& params, const Pressed& pressed,
-           const double (&before)[3], Tally* tally) {
-  const CoulombLoad load =
-      coulomb_load(ramp.surface(), pressed.result.state, pressed.result.feature, wide(pressed.result.force_n), edge_friction);
+// Whether a slip ends on a feature along which it has gone straight: all of a plane, the bottom of a groove.
+bool is_straight(const RampShape& shape, std::uint32_t state) {
+  if (shape.kind == RampKind::groove) return state == FDCG_EDGE;
+  return shape.kind != RampKind::convex_edges && state == FDCG_FACE;
+}
+
+void judge(const Ramp& ramp, const Track& track, const fdcg_params& params, const Pressed& pressed, const double (&before)[3],
+           Tally* tally) {
+  const CoulombLoad load = coulomb_load(ramp.surface(), pressed.result.state, pressed.result.feature,
+                                        wide(pressed.result.force_n), track.edge_friction);
   ++tally->ticks;
   if (!load.is_borne) {
     ++tally->wrong;
@@ -95,6 +102,10 @@ void judge(const Ramp& ramp, std::uint32_t edge_friction, const fdcg_params& par
     error = std::max<Wide>({0, load.ratio() - mu_dynamic, kStickAgain * mu_dynamic - load.ratio()});
   }
   tally->worst_ratio_error = std::max(tally->worst_ratio_error, static_cast<double>(error));
+  if (!has_moved || !is_straight(track.shape, pressed.result.state)) return;
+  const Wide off = off_the_slip(ramp.surface(), pressed.result.state, pressed.result.feature, wide(pressed.result.force_n),
+                                wide(before) - wide(pressed.contact.hip), load.normal);
+  tally->worst_off_slip = std::max(tally->worst_off_slip, static_cast<double>(off));
 }
 
 Tally run(const Ramp& ramp, const Track& track, const Motion& motion, double depth, int ticks, Random random) {
@@ -119,7 +130,7 @@ Tally run(const Ramp& ramp, const Track& track, const Motion& motion, double dep
     double before[3];
     std::copy_n(pressed.contact.god_object, 3, before);
     pressed.step(params, hip_at(lead_m + tick * tick_m));
-    judge(ramp, track.edge_friction, params, pressed, before, &tally);
+    judge(ramp, track, params, pressed, before, &tally);
   }
   return tally;
 }
@@ -208,7 +219,7 @@ Results slide_everywhere(const LawOptions& options) {
 void say_by_track(Results& results, const LawOptions& options) {
   Table table(options.output, "coulomb_slides",
               {"surface", "opening_deg", "precision", "graph", "edge_rule", "depth_of_extent", "ticks", "moved", "held",
-               "shallow", "wrong", "worst_ratio_error"});
+               "shallow", "wrong", "worst_ratio_error", "worst_off_slip"});
   for (std::size_t t = 0; t < results.tracks.size(); ++t) {
     const Track& track = results.tracks[t];
     for (std::size_t d = 0; d < kDepthCount; ++d) {
@@ -217,7 +228,7 @@ void say_by_track(Results& results, const LawOptions& options) {
         all.add(results.at(t, m, d));
       table.row(track.shape.name(), track.shape.opening_deg, name_of(track.precision), name_of(track.graph),
                 track.edge_friction == FDCG_EDGE_WEDGE ? "wedge" : "paper", kDepths[d], all.ticks, all.moved, all.held,
-                all.shallow, all.wrong, all.worst_ratio_error);
+                all.shallow, all.wrong, all.worst_ratio_error, all.worst_off_slip);
     }
   }
 }
@@ -255,6 +266,8 @@ void measure_slides(const LawOptions& options, Bars& bars) {
     const std::string of = std::string(", ") + name_of(precision);
     bars.at_most("slide: |Ft|/|Fn| from mu_d" + of, all.worst_ratio_error, ratio_bar(precision), "",
                  std::to_string(all.moved) + " ticks of sliding");
+    bars.at_most("slide: friction beside the slip, of |Fn|" + of, all.worst_off_slip, ratio_bar(precision), "",
+                 "on planes, through all of their seams, and in grooves");
     bars.at_most("slide: ticks on features that bear no load" + of, static_cast<double>(all.wrong), 0, "ticks");
     bars.at_least("slide: share of the judged ticks that slid" + of,
                   static_cast<double>(all.moved) / static_cast<double>(all.moved + all.held), 0.5, "",
