@@ -239,7 +239,12 @@ TEST_CASE("after a tie every right answer is right, and nothing else") {
   std::vector<std::size_t> tied;
   for (std::size_t i = 0; i < stage.way.size(); ++i) {
     const TrueBody::Tick& tick = stage.ticks_true[i];
-    if (tick.feel.in_contact && !tick.others.empty() && plain::length(tick.feel.force) > 0.05) tied.push_back(i);
+    if (!tick.feel.in_contact || tick.others.empty() || !(plain::length(tick.feel.force) > 0.05)) continue;
+    REQUIRE(tick.in_floats.has_value());
+    const Feel& last = tick.others.back();
+    if (last.in_contact != tick.in_floats->in_contact ||
+        plain::length(last.god_object - tick.in_floats->god_object) >= kApart_m)
+      tied.push_back(i);
     for (const Feel& other : tick.others)
       CHECK((other.in_contact != tick.feel.in_contact || plain::length(other.god_object - tick.feel.god_object) >= kApart_m));
   }
@@ -247,9 +252,10 @@ TEST_CASE("after a tie every right answer is right, and nothing else") {
   CHECK(stage.judged().tied_share == 0);  // what is at the truth needs no excuse
   CHECK(stage.judged().god_object_max_m == 0);
   for (const std::size_t i : tied)
-    stage.felt[i] = stage.ticks_true[i].others[0];
+    stage.felt[i] = stage.ticks_true[i].others.back();
   const Metrics other = stage.judged();
   CHECK(other.tied_share == Approx(static_cast<double>(tied.size()) / static_cast<double>(other.contact_ticks)));
+  CHECK(other.equal_share < other.tied_share);
   CHECK(other.judged_rms_m == 0);
   // What doubles tell apart is no tie for what computes in double.
   const auto told = [&](std::size_t i) { return stage.ticks_true[i].others_for(true).empty(); };
@@ -308,6 +314,73 @@ TEST_CASE("into corners exactly, what computes in double is where 256 bits are, 
   const Metrics m = judge(stage.way, 1000, feel_along(*step, stage.way), stage.ticks_true, stage.truth, {}, true);
   CHECK(m.tied_share == 0);
   CHECK(m.judged_rms_m < 1e-15);
+}
+
+TEST_CASE("into corners exactly, what computes in float is where 256 bits are with its numbers, and needs no tie") {
+  Stage stage("star_80", WayKind::corner_dive);
+  const auto step = make_fdcg(stage.ground.soup(), {bake::Precision::f32, true, false});
+  const std::vector<Feel> felt = feel_along(*step, stage.way);
+  const Metrics m = judge(stage.way, 1000, felt, stage.ticks_true, stage.truth);
+  CHECK(m.in_floats_share > 0);
+  CHECK(m.tied_share == 0);
+  CHECK(m.judged_rms_m < 1e-7);
+  // Its own answers are no excuse for what computes in double, nor for what is beside them all.
+  CHECK(judge(stage.way, 1000, felt, stage.ticks_true, stage.truth, {}, true).in_floats_share == 0);
+  stage.felt = felt;
+  for (Feel& f : stage.felt)
+    if (f.in_contact) f.god_object[0] += 4 * kApart_m;
+  CHECK(stage.judged().in_floats_share == 0);
+  CHECK(stage.judged().judged_rms_m > kApart_m);
+}
+
+TEST_CASE("into a cube along its diagonal exactly, three faces are as near") {
+  const Ground ground(body_named("cube_12").make());
+  const TrueBody truth(ground);
+  Way way;
+  for (const double a : {0.053, 0.0505, 0.0499, 0.0495})
+    way.push_back({a, -a, a});
+  const std::vector<TrueBody::Tick> ticks = truth.follow(way, {0, 0, true});
+  std::vector<Feel> felt;
+  for (const TrueBody::Tick& tick : ticks)
+    felt.push_back(tick.feel);
+  CHECK(judge(way, 1000, felt, ticks, truth, {}, true).tied_share == 0);
+  for (std::size_t i = 2; i < way.size(); ++i) {
+    REQUIRE(ticks[i].feel.in_contact);
+    for (std::size_t k = 0; k < 3; ++k) {
+      Ground::Point other = way[i];
+      other[k] = way[i][k] > 0 ? 0.05 : -0.05;
+      if (plain::length(other - ticks[i].feel.god_object) > kApart_m) felt[i].god_object = other;
+    }
+  }
+  const Metrics equal = judge(way, 1000, felt, ticks, truth, {}, true);
+  CHECK(equal.tied_share == 1);
+  CHECK(equal.equal_share == 1);
+  felt[3].god_object[0] += 2e-15;  // no tie's business, but no longer as near
+  felt[3].god_object[1] += 2e-15;
+  felt[3].god_object[2] += 2e-15;
+  CHECK(judge(way, 1000, felt, ticks, truth, {}, true).equal_share == 0.5);
+}
+
+TEST_CASE("a hand that is off by a tie has met the face that it is behind") {
+  const bake::PolygonSoup soup = body_named("sphere_80").make();
+  const Ground ground(soup);
+  const TrueBody truth(ground);
+  int begun = 0;
+  for (std::size_t f = 0; f < soup.face_count(); ++f) {
+    Ground::Point middle{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const bake::Vec3& p = soup.points[soup.corners[3 * f + k]];
+      middle = middle + Ground::Point{p.x / 3, p.y / 3, p.z / 3};
+    }
+    const Ground::Point out = middle * (1 / plain::length(middle));
+    const auto ticks = truth.follow({middle + out * 3e-3, middle + out * 1e-8, middle - out * 1e-3}, {0, 0, true});
+    REQUIRE(ticks[1].state == FDCG_FREE);
+    REQUIRE(ticks[2].state != FDCG_FREE);
+    begun += ticks[2].visit.margin < kTie;
+    for (const Feel& other : ticks[2].others)
+      CHECK(other.in_contact);
+  }
+  CHECK(begun > 0);
 }
 
 TEST_CASE("without a tie one answer is right") {

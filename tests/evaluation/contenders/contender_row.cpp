@@ -54,6 +54,8 @@ const std::vector<std::string>& contender_columns() {
                                                    "bytes_per_face",
                                                    "bake_s",
                                                    "tied_share",
+                                                   "equal_share",
+                                                   "in_floats_share",
                                                    "unjudged_share",
                                                    "god_object_rms_judged_m",
                                                    "god_object_rms_m",
@@ -104,10 +106,11 @@ std::vector<std::string> cells_of(const ContenderRow& row, const std::vector<Tru
                ticks.at(0.99), ticks.at(0.999), ticks.at(1), timing.met_p999_ns, timing.met_max_ns, cold_mean, cold.at(0.5),
                cold.at(0.99), cold.at(1), free.at(0.5), contact.at(0.5), row.contact_instructions, m.transitions,
                m.carried_ticks, m.astray_ticks, static_cast<double>(info.bytes) / row.body.faces, info.bake_s, m.tied_share,
-               m.unjudged_share, m.judged_rms_m, m.god_object_rms_m, m.god_object_p50_m, m.god_object_p99_m, m.god_object_max_m,
-               m.force_rms_n, m.force_max_n, m.force_share_p99, m.noticeable_share, m.direction_p99_deg, m.direction_max_deg,
-               m.jump_n_per_ms, m.true_jump_n_per_ms, m.wrong_feature_share, m.push_throughs, m.push_through_share,
-               m.phantom_share, row.creep_m, row.energy.work_j, row.energy.bound_j, row.along.reference);
+               m.equal_share, m.in_floats_share, m.unjudged_share, m.judged_rms_m, m.god_object_rms_m, m.god_object_p50_m,
+               m.god_object_p99_m, m.god_object_max_m, m.force_rms_n, m.force_max_n, m.force_share_p99, m.noticeable_share,
+               m.direction_p99_deg, m.direction_max_deg, m.jump_n_per_ms, m.true_jump_n_per_ms, m.wrong_feature_share,
+               m.push_throughs, m.push_through_share, m.phantom_share, row.creep_m, row.energy.work_j, row.energy.bound_j,
+               row.along.reference);
 }
 
 }  // namespace fdcg::test

@@ -326,7 +326,11 @@ std::vector<float> Evaluation::run_contender(const Scene& scene, const WayPlan& 
     unjudged_at_ = info.name + " on " + scene.body.name + ", " + along.way;
   }
   if (info.family == "fdcg") {
-    faults_.add(info.name + " on " + scene.body.name + ", " + along.way, row.metrics, row.creep_m, row.energy);
+    const std::string where = info.name + " on " + scene.body.name + ", " + along.way;
+    faults_.add(where, row.metrics, row.creep_m, row.energy);
+    const double tied = row.metrics.tied_share - row.metrics.equal_share;
+    if (along.way != name_of(WayKind::corner_dive) && tied > faults_.tied_share)
+      faults_.tied_share = tied, faults_.tied_at = where;
   }
   return error_m;
 }
@@ -384,6 +388,8 @@ int Evaluation::finish() {
                 faults_.astray_at);
   bars_.at_most("own creep at rest", faults_.creep_m, 0, "m", faults_.creep_at);
   bars_.at_most("own work beyond the zero-order hold's", faults_.energy_excess_j, 0, "J", faults_.energy_at);
+  bars_.at_most("own contact ticks at a tie, largest share of ways that are not aimed at corners", faults_.tied_share, 0.01,
+                "of a way's", faults_.tied_at);
   bars_.at_most("contact ticks that are not judged, largest share", unjudged_share_, 0.01, "of a way's", unjudged_at_);
   if (!options_.way_files.empty()) bars_.at_most("truth beside the way files'", truth_off_m_, kBody_m * 0x1p-53, "m");
   return bars_.failures() == 0 ? 0 : 1;

@@ -66,8 +66,8 @@ class Evaluation {
   // What must never happen to this runtime, over every row.
   struct OwnFaults {
     std::uint64_t push_throughs = 0, astray = 0;
-    double creep_m = 0, energy_excess_j = 0;
-    std::string push_through_at, astray_at, creep_at, energy_at;
+    double creep_m = 0, energy_excess_j = 0, tied_share = 0;
+    std::string push_through_at, astray_at, creep_at, energy_at, tied_at;
     void add(const std::string& where, const Metrics& m, double creep, const LoopEnergy& energy);
   };
 

@@ -17,6 +17,7 @@ namespace {
 constexpr double kBackwards = -0.7;  // a cosine: two forces of a right-angled corner are not opposite
 constexpr double kTouch_m = 1e-5;    // depth from which a contact that is lost or made up counts
 constexpr double kWrongFeature_m = kApart_m;
+constexpr double kEqual_m = 1e-15;  // of two distances on bodies of 0.1 m: the rounding of doubles
 
 double at(std::vector<double> values, double share) {
   if (values.empty()) return 0;
@@ -43,6 +44,10 @@ bool is_lost(const Feel& felt, const Feel& truth) {
          (!felt.in_contact || dot(felt.force, truth.force) < kBackwards * length(felt.force) * true_force);
 }
 
+bool is_at(const Feel& felt, const Feel& answer) {
+  return felt.in_contact == answer.in_contact && length(felt.god_object - answer.god_object) < kApart_m;
+}
+
 template <class Force>
 double largest_jump(std::size_t ticks, std::size_t in_a_ms, Force force) {
   double largest = 0;
@@ -67,7 +72,7 @@ Metrics judge(const Way& way, double rate_hz, const std::vector<Feel>& felt, con
   m.ticks = way.size();
   std::vector<double> god_object, judged, force, share, direction;
   bool was_lost = false;
-  std::uint64_t tied = 0, unjudged = 0, lost = 0, wrong = 0, noticeable = 0, phantoms = 0;
+  std::uint64_t tied = 0, equal = 0, in_floats = 0, unjudged = 0, lost = 0, wrong = 0, noticeable = 0, phantoms = 0;
   for (std::size_t i = 0; i < way.size(); ++i) {
     const Feel &f = felt[i], &t = truth[i].feel;
     const std::span<const Feel> others = truth[i].others_for(is_double);
@@ -85,7 +90,15 @@ Metrics judge(const Way& way, double rate_hz, const std::vector<Feel>& felt, con
       continue;
     }
     ++m.contact_ticks;
-    tied += !others.empty() && (f.in_contact != t.in_contact || god_object.back() >= kApart_m);
+    if (!is_at(f, t)) {
+      const bool is_in_floats = !is_double && truth[i].in_floats && is_at(f, *truth[i].in_floats);
+      in_floats += is_in_floats;
+      const bool is_tied =
+          !is_in_floats && std::any_of(others.begin(), others.end(), [&](const Feel& other) { return is_at(f, other); });
+      tied += is_tied;
+      const double farther_m = length(f.god_object - way[i]) - length(t.god_object - way[i]);
+      equal += is_tied && f.in_contact && friction.mu_static == 0 && std::abs(farther_m) <= kEqual_m;
+    }
     const double true_force = length(t.force);
     const bool is_through_all =
         is_lost(f, t) && std::all_of(others.begin(), others.end(), [&](const Feel& other) { return is_lost(f, other); });
@@ -103,6 +116,8 @@ Metrics judge(const Way& way, double rate_hz, const std::vector<Feel>& felt, con
   }
   const double contact = std::max<double>(1, static_cast<double>(m.contact_ticks));
   m.tied_share = static_cast<double>(tied) / contact;
+  m.equal_share = static_cast<double>(equal) / contact;
+  m.in_floats_share = static_cast<double>(in_floats) / contact;
   m.unjudged_share = static_cast<double>(unjudged) / contact;
   m.judged_rms_m = rms(judged);
   m.god_object_rms_m = rms(god_object);

@@ -18,9 +18,11 @@ struct Metrics {
   std::uint64_t ticks = 0, contact_ticks = 0;        // of the truth
   std::uint64_t transitions = 0, carried_ticks = 0;  // of the contender
   // After a tie there are answers that are as right as the truth (TrueBody::Tick::others). Ticks of true contact in which the
-  // contender is not at the truth, kApart_m or more off, and there are others, as a share; and the error from the nearest right
-  // answer over every tick.
-  double tied_share = 0, judged_rms_m = 0;
+  // contender is not at the truth, kApart_m or more off, but at another, as a share; those in which it is where the model is
+  // with HIP and corners rounded to floats, apart from them, for what computes so; and the error from the nearest right answer
+  // over every tick. `equal_share`: of the tied, those that are as near to the HIP as the truth in all digits, without
+  // friction: faces that lie alike, between which no precision decides.
+  double tied_share = 0, equal_share = 0, in_floats_share = 0, judged_rms_m = 0;
   // Carried ticks in which the contender is neither at a right answer nor on the way to it (CarriedWay).
   std::uint64_t astray_ticks = 0;
   // Ticks of true contact, as a share, in which nothing tells whether it is one: a force that is lost in a carried tick whose

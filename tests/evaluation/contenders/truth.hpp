@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -31,8 +32,29 @@ constexpr std::uint32_t kLargestBruteForce = 2'000'000;  // faces
 // Up to here a tie is decided in 256 bits: another surface, of three kilobytes a face, made when the first tie is met.
 constexpr std::uint32_t kLargestIn256Bits = 200'000;  // faces
 
-// A body's unmerged graph in double, with what the truth is computed from: by brute force in long double (ReferenceWalker), and
-// in 256 bits where those do not surely decide. For one thread at a time.
+// A body's unmerged graph in some precision, and the contact model on it: by brute force in long double, and in 256 bits where
+// those do not surely decide.
+class ModelOfBody {
+ public:
+  ModelOfBody(const Ground& ground, bake::Precision precision);
+
+  // Null: the body is too large.
+  [[nodiscard]] const ReferenceSurface<long double>* surface() const { return surface_.get(); }
+  [[nodiscard]] const fdcg_graph& view() const { return view_; }
+  [[nodiscard]] bool is_decided_in_256_bits() const { return view_.header->node_count <= kLargestIn256Bits; }
+  ReferenceStep step(ReferenceWalker<long double>& walker, const std::array<double, 3>& hip_local,
+                     const ReferenceFriction& friction) const;
+  [[nodiscard]] Feel feel_of(const ReferenceContact<long double>& contact, const Ground::Point& hip_m,
+                             const Ground::Point& shift_m) const;
+
+ private:
+  std::vector<std::byte> file_;
+  fdcg_graph view_{};
+  std::unique_ptr<ReferenceSurface<long double>> surface_;
+  mutable std::unique_ptr<ReferenceSurface<Mpfr256>> widest_;  // from the first tie on
+};
+
+// A body's unmerged graph in double, with what the truth is computed from. For one thread at a time.
 class TrueBody {
  public:
   // Some kilobyte a face.
@@ -54,6 +76,9 @@ class TrueBody {
     // or more off; the last `as_right_in_doubles` are of kTieOfDoubles, and alone as right for what computes in double.
     std::vector<Feel> others;
     std::size_t as_right_in_doubles = 0;
+    // The model's own answer where HIP and corners are rounded to floats, as a graph of floats has them (contact-model TICK-4):
+    // no tie for who computes so. Of ways that meet a tie; among the others too where it is as far off.
+    std::optional<Feel> in_floats;
     [[nodiscard]] std::span<const Feel> others_for(bool is_double) const {
       return std::span(others).last(is_double ? as_right_in_doubles : others.size());
     }
@@ -70,24 +95,20 @@ class TrueBody {
   };
   // The tick that leads from there to this HIP; moves `place` to its end. Not for bodies that are too large for brute force.
   [[nodiscard]] Visit visit(Place* place, const Ground::Point& hip_m, const ReferenceFriction& friction) const;
-  [[nodiscard]] bool can_visit() const { return surface_ != nullptr; }
+  [[nodiscard]] bool can_visit() const { return model_.surface() != nullptr; }
 
   // From a point to the closed feature, in metres.
   [[nodiscard]] double distance_to(std::uint32_t state, std::uint32_t feature, const Ground::Point& point) const;
 
  private:
   class Branches;
-  [[nodiscard]] Feel feel_of(const ReferenceContact<long double>& contact, const Ground::Point& hip_m,
-                             const Ground::Point& shift_m) const;
-  ReferenceStep step(ReferenceWalker<long double>& walker, const std::array<double, 3>& hip_local,
-                     const ReferenceFriction& friction) const;
+  class Walk;
   [[nodiscard]] std::vector<Tick> follow_by_runtime(const Way& way, const ReferenceFriction& friction) const;
+  void follow_in_floats(const Way& way, const ReferenceFriction& friction, std::vector<Tick>& ticks) const;
 
   const Ground& ground_;
-  std::vector<std::byte> file_;
-  fdcg_graph view_{};
-  std::unique_ptr<ReferenceSurface<long double>> surface_;
-  mutable std::unique_ptr<ReferenceSurface<Mpfr256>> widest_;  // from the first tie on
+  ModelOfBody model_;
+  mutable std::unique_ptr<ModelOfBody> in_floats_;  // from the first tie on
 };
 
 }  // namespace fdcg::test
