@@ -55,6 +55,8 @@ class NodeRef {
   [[nodiscard]] uint32_t which(uint32_t k) const { return side(k).link & 1; }
   // The corner at which side k starts.
   [[nodiscard]] uint32_t corner(uint32_t k) const { return side(k).corner; }
+  // The corner at which side k of its loop starts, if k may be one past the last.
+  [[nodiscard]] uint32_t corner_before(uint32_t k) const { return corner(k & (0u - uint32_t{k < side_count()})); }
   // The node beyond side k, or FDCG_NONE.
   [[nodiscard]] uint32_t across(uint32_t k) const { return side(k).across; }
   // The side with this link, or side_count(): what the connection's record says, without its cache line. Of the first three
@@ -70,8 +72,9 @@ class NodeRef {
     }
     return k;
   }
-  [[nodiscard]] uint32_t previous(uint32_t k) const { return (k == 0 ? side_count() : k) - 1; }
-  [[nodiscard]] uint32_t next(uint32_t k) const { return k + 1 < side_count() ? k + 1 : 0; }
+  // Without a branch: which side a god-object crosses cannot be predicted.
+  [[nodiscard]] uint32_t previous(uint32_t k) const { return k - 1 + (side_count() & (0u - uint32_t{k == 0})); }
+  [[nodiscard]] uint32_t next(uint32_t k) const { return (k + 1) & (0u - uint32_t{k + 1 < side_count()}); }
 
   // voronoi_plane() where the graph has them.
   [[nodiscard]] Plane<Real> stored_plane(uint32_t k) const {

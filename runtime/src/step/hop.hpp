@@ -67,7 +67,7 @@ FDCG_HOT bool hop_over(const GraphView<Geometry>& graph, const Vec3<Real>& hip, 
   const Vec3<Real> from = hop->god_object, way = (hop->move.target - from) - hop->rounding_residual;
   const Vec3<Real> ahead = hop->rounding_residual + way * hop->move.crossing.fraction;
   const auto& edge = graph.edges()[crossed.link >> 1];
-  const Vec3<Real> start = graph.corner_point((crossed.link & 1) == 0 ? crossed.corner : here.corner(here.next(k)));
+  const Vec3<Real> start = graph.corner_point(here.corner_before(k + (crossed.link & 1)));
   const Vec3<Real> direction = vec(edge.direction);
   const Real u = dot((from + ahead) - start, direction), end_tolerance = end_rounding(start, edge.length);
   if (!(u > end_tolerance && edge.length - u > end_tolerance)) return false;
