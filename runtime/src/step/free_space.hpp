@@ -23,7 +23,7 @@ template <class Geometry, class Real = typename Geometry::Real>
                                          const FirstHit<Real>& first) {
   const bool is_on_face = first.feature.state == FDCG_FACE;
   const Real over = FDCG_MUTANT("grazing") && is_on_face ? first.fraction + Real(0.01)
-                    : is_on_face                         ? sweep.part_over(first.feature.index, first.fraction, 0)
+                    : is_on_face && !sweep.is_over()     ? sweep.part_over(first.feature.index, first.fraction, 0)
                                                          : first.fraction;
   Vec3<Real> point = sweep.point_at(FDCG_MUTANT("arrives-late") ? over + Real(0.01) : over <= 1 ? over : first.fraction);
   if (is_on_face) point = onto_slab(walk, point, first.feature.index);

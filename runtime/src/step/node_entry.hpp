@@ -9,6 +9,31 @@
 
 namespace fdcg {
 
+// Whether a way that is surely over a node is told from others: it asks neither the node's corners nor any sign. What is built
+// for size does without.
+#if FDCG_WITH_FAST_EDGES && !defined(__OPTIMIZE_SIZE__)
+inline constexpr bool kTellsOver = true;
+#else
+inline constexpr bool kTellsOver = false;
+#endif
+
+// Whether all of a way is known to be over the face that it met first.
+template <bool kIsTold>
+class IsOver {
+ public:
+  void set(bool is_over) { is_over_ = is_over; }
+  [[nodiscard]] bool get() const { return is_over_; }
+
+ private:
+  bool is_over_ = false;
+};
+template <>
+class IsOver<false> {
+ public:
+  void set(bool) {}
+  [[nodiscard]] bool get() const { return false; }
+};
+
 // What a way met first. The result does not depend on the order in which nodes are looked at: of two met at one fraction the
 // lower one counts.
 template <class Real>
@@ -48,6 +73,8 @@ class NodeEntry {
     slab_ = slab_depth(graph_.max_deviation(), from_bound_);
   }
 
+  // Whether all of the way is known to be over the face that it meets first; not told of one met in a tick before.
+  [[nodiscard]] bool is_over() const { return is_over_.get(); }
   [[nodiscard]] Vec3<Real> point_at(Real fraction) const { return from_ + way_ * fraction; }
 
   static constexpr Real kNever = 2;  // a fraction after the end
@@ -145,7 +172,8 @@ class NodeEntry {
     if (FDCG_MUTANT("sweep-blind") && n % 5 == 3) return;
     if (node.plane().distance(to_) > to_bound_ || (is_left_out(n, node) && !FDCG_MUTANT("leave-out")))
       return;  // before any exact sign is computed
-    if (is_surely_beside(node)) return;
+    const Lies lies = lies_surely(node);
+    if (lies == Lies::beside) return;
     const Real end_side = side(node, to_, to_bound_);
     if (!(end_side < 0)) return;
     const Real start_side = side(node, from_, from_bound_);
@@ -155,15 +183,16 @@ class NodeEntry {
       return;
     }
     if (start_side < 0 && left_lies_behind(node)) return;
+    const bool is_over = kTellsOver && lies == Lies::over && start_side >= 0;  // where it meets the plane, too
     const Real fall = start_side - end_side, rounded = start_side > 0 ? start_side / fall : Real(0);
     const Real noise = from_bound_ + to_bound_ + (is_slab ? slab_ : Real(0));
     const bool is_grazing = noise > kGrazing<Real> * fall;
     const Real least = !is_grazing ? rounded : start_side > noise ? (start_side - noise) / fall : Real(0);
     if (!is_before_best(least, n)) return;
-    const Real fraction = is_grazing ? part_over(n, rounded, least) : rounded;  // costs less than what follows
+    const Real fraction = is_grazing && !is_over ? part_over(n, rounded, least) : rounded;  // costs less than what follows
     if (!is_before_best(fraction, n)) return;
     uint64_t met_exactly = 0;
-    if (!passes_inside(node, rounded, &met_exactly)) {
+    if (!is_over && !passes_inside(node, rounded, &met_exactly)) {
       // Along a node, in its slab: seen edge-on its loop is a line, which the way may pass on either side.
       if (!is_grazing || !is_slab || !is_near_inexact(node)) return;
       const Real thick = (slab_ - from_bound_) + side_rounding(from_bound_, to_bound_) / 2;
@@ -183,22 +212,29 @@ class NodeEntry {
     best_.fraction = fraction;
     best_.node = n;
     best_.feature = {FDCG_FACE, n};
+    is_over_.set(is_over);
     if (met_exactly && !FDCG_MUTANT("exact-feature")) best_.feature = on_rim(node, met_exactly, point_at(fraction));
   }
 
-  // Whether all of the way is beyond one of a node's sides, by more than rounding: neither is the node entered then nor does it
-  // hold what the way left. Says so of most nodes that a sweep tries, without an exact sign and without their corners, which
-  // lie elsewhere in the file.
-  [[nodiscard]] bool is_surely_beside(NodeRef<Geometry> node) const {
-    if (!Geometry::kKeepsDirections || !graph_.has_planes()) return false;
+  // How all of the way lies to a node, by more than rounding. Beside it, beyond one of its sides: neither is the node entered
+  // then nor does it hold what the way left. So lie most nodes that a sweep tries, and it needs no exact sign and no corner of
+  // theirs, which lie elsewhere in the file. Over it, inside of every side, where its corners lie in its plane: the way passes
+  // every edge on its inner side where it meets the plane between its ends.
+  enum class Lies { unsure, beside, over };
+  [[nodiscard]] Lies lies_surely(NodeRef<Geometry> node) const {
+    if (!Geometry::kKeepsDirections || !graph_.has_planes()) return Lies::unsure;
     const Real off = beside_rounding(slab_ + to_bound_, graph_.has_inexact_nodes());
+    bool is_inside = kTellsOver && !node.is_inexact();
     uint32_t k = 0;
     for (; k < node.side_count(); ++k) {
       const Plane<Real> plane = node.stored_plane(k);
-      if (plane.distance(from_) > off && plane.distance(to_) > off) break;
+      const Real begin = plane.distance(from_);
+      if (begin > off && plane.distance(to_) > off) break;
+      if constexpr (kTellsOver) is_inside = is_inside && begin < -off && plane.distance(to_) < -off;
     }
     spend(work_left_, kBesideWork * (k + 1));
-    return k < node.side_count();
+    if (k < node.side_count()) return Lies::beside;
+    return is_inside ? Lies::over : Lies::unsure;
   }
 
   // Whether a node's corners lie off its plane, or off a neighbour's: over that one a way in its slab may come below this one's
@@ -254,6 +290,7 @@ class NodeEntry {
     best_.fraction = 0;
     best_.node = n;
     best_.feature = {FDCG_FACE, n};
+    is_over_.set(false);
   }
 
   // Whether the face or edge that the way leaves and the node are opposite each other, tested corner by corner: then the
@@ -435,6 +472,7 @@ class NodeEntry {
   }
 
   uint32_t corner_on_line_ = FDCG_NONE;
+  [[no_unique_address]] IsOver<kTellsOver> is_over_;
 };
 
 }  // namespace fdcg
