@@ -14,6 +14,13 @@
 #define FDCG_HOT [[gnu::always_inline]] inline
 #endif
 
+// Of small functions whose arguments are in memory anyway: where the library is built for size, one copy serves all.
+#ifdef __OPTIMIZE_SIZE__
+#define FDCG_ONE_COPY [[gnu::noinline]] inline
+#else
+#define FDCG_ONE_COPY inline
+#endif
+
 namespace fdcg {
 
 template <class Real>

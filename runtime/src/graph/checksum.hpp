@@ -17,7 +17,8 @@ uint64_t checksum_start(uint64_t bytes);
 // The sum over blocks first to end - 1 of the `bytes` bytes at `data`.
 uint64_t checksum_of_blocks(const unsigned char* data, uint64_t bytes, uint64_t first, uint64_t end);
 
-// The checksum of a header or a table, in as little code as may be: opening a trusted graph needs no other.
-uint64_t small_checksum(const void* data, uint64_t bytes);
+// The checksum of a header or a table, whole words and at most a block, in as little code as may be: opening a trusted graph
+// needs no other.
+uint64_t small_checksum(const void* data, uint32_t bytes);
 
 }  // namespace fdcg

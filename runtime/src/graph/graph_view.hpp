@@ -293,6 +293,16 @@ struct GraphView : Geometry {
 template <class Real>
 using RigidView = GraphView<RigidGeometry<Real>>;
 
+// How far a place is in front of a node's plane, and beyond that of its side k.
+template <class Geometry, class Real = typename Geometry::Real>
+FDCG_ONE_COPY Real distance_from(NodeRef<Geometry> node, const Vec3<Real>& x) {
+  return node.plane().distance(x);
+}
+template <class Geometry, class Real = typename Geometry::Real>
+FDCG_ONE_COPY Real distance_beyond(NodeRef<Geometry> node, uint32_t k, const Vec3<Real>& x) {
+  return node.voronoi_plane(k).distance(x);
+}
+
 // The sign of x against the plane through the first three corners of an exactly planar node.
 template <class Geometry, class Real = typename Geometry::Real>
 [[gnu::noinline]] int exact_side_sign(const GraphView<Geometry>& graph, NodeRef<Geometry> node, const Vec3<Real>& x,
@@ -312,7 +322,7 @@ template <class Geometry, class Real = typename Geometry::Real>
 template <class Geometry, class Real = typename Geometry::Real>
 FDCG_HOT Real side_of(const GraphView<Geometry>& graph, NodeRef<Geometry> node, const Vec3<Real>& x, Real bound,
                       uint32_t* work_left) {
-  const Real distance = node.plane().distance(x);
+  const Real distance = distance_from(node, x);
   if (absolute(distance) > bound || node.is_inexact()) return distance;
   const int sign = exact_side_sign(graph, node, x, work_left);
   if (sign == 0) return 0;

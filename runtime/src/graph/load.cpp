@@ -26,6 +26,7 @@ uint64_t padded(uint64_t bytes) {
   return (bytes + FDCG_ALIGNMENT - 1) / FDCG_ALIGNMENT * FDCG_ALIGNMENT;
 }
 
+static_assert(FDCG_MOST_SECTIONS * sizeof(fdcg_section) + FDCG_ALIGNMENT <= kChecksumBlock);
 uint64_t table_bytes(const fdcg_header& header) {
   return header.section_count * uint64_t{sizeof(fdcg_section)};
 }
@@ -228,7 +229,7 @@ fdcg_status check_table(const void* data, const fdcg_header& header, fdcg_error*
   if (end > header.file_bytes)
     return Message(error, FDCG_E_LAYOUT).text("the section table reaches beyond the end of the file");
   const auto* table = static_cast<const unsigned char*>(data) + sizeof(fdcg_header);
-  if (header.table_checksum != small_checksum(table, end - sizeof(fdcg_header))) {
+  if (header.table_checksum != small_checksum(table, static_cast<uint32_t>(end - sizeof(fdcg_header)))) {
     return Message(error, FDCG_E_CHECKSUM, sizeof(fdcg_header))
         .text("the section table's checksum does not match; the file is damaged, compile the mesh again");
   }

@@ -27,12 +27,12 @@ inline bool is_in_clear_ball(const ClearBall& ball, Vec3<double> hip) {
 // way may enter it from beside.
 template <class Geometry, class Real = typename Geometry::Real>
 inline Real node_distance(const GraphView<Geometry>& graph, NodeRef<Geometry> node, Vec3<Real> at, Real nearest) {
-  const Real from_plane = absolute(node.plane().distance(at));
+  const Real from_plane = absolute(distance_from(node, at));
   if (node.is_inexact()) return from_plane - static_cast<Real>(graph.max_deviation());
   if (!(from_plane < nearest)) return from_plane;
   Real beside = 0;
   for (uint32_t k = 0; k < node.side_count(); ++k) {
-    const Real beyond = node.voronoi_plane(k).distance(at);
+    const Real beyond = distance_beyond(node, k, at);
     if (beyond > beside) beside = beyond;
   }
   return beside > 0 ? root(from_plane * from_plane + beside * beside) : from_plane;

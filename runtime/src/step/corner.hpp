@@ -21,7 +21,7 @@ struct Steepest {
   // contact-model CORNER-2: of the two squares the smaller tells best: near a groove all reaches are one number, far from it
   // all distances are.
   [[nodiscard]] bool is_less_steep_than(const Steepest& other, Real half_t2) const {
-    if (FDCG_MUTANT("steepest-at-vertex")) return feature == kFree;
+    if (FDCG_MUTANT("steepest-at-vertex")) return feature.is_free();
     const bool are_near = distance2 < half_t2 && other.distance2 < half_t2;
     return are_near ? other.distance2 < distance2 : other.reach2 > reach2;
   }
@@ -192,8 +192,8 @@ inline Feature next_from_corner(Walk<Geometry>& walk, CornerRef<Geometry> corner
   if (walk.graph.has_inexact_nodes() && search.lost2 < kClearlyNearer2<Real> * search.best.distance2 &&
       search.best.distance2 > square(slab_depth(2 * walk.graph.max_deviation(), walk.hip_bound)))
     return kFree;
-  if (is_inside) return found == kFree ? walk.active : found;
-  if (found == kFree) {
+  if (is_inside) return found.is_free() ? walk.active : found;
+  if (found.is_free()) {
     const bool may_hold = !corner.is_open() || FDCG_MUTANT("open-corner");
     return may_hold && dot(t, corner.normal()) < 0 ? walk.active : kFree;
   }
@@ -209,7 +209,7 @@ inline Feature next_from_corner(Walk<Geometry>& walk, CornerRef<Geometry> corner
 template <class Geometry, class Real = typename Geometry::Real>
 [[gnu::noinline, gnu::cold]] Vec3<Real> moved_beside(const Walk<Geometry>& walk, Feature next, const Vec3<Real>& point,
                                                      const Vec3<Real>& t) {
-  if (next == kFree) return point;
+  if (next.is_free()) return point;
   Vec3<Real> down;  // to the foot of the HIP on `next`
   if (next.state == FDCG_FACE) {
     down = foot_on(walk.graph.node(next.index), walk.hip) - point;

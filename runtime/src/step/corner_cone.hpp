@@ -175,7 +175,7 @@ template <class Geometry>
   walk.graph.for_each_in_fan(corner, [&](const FanEntry& entry) {
     ++all;
     if (entry.node == FDCG_NONE || walk.graph.node(entry.node).is_inexact()) return;
-    const auto side = walk.graph.node(entry.node).plane().distance(walk.hip);
+    const auto side = distance_from(walk.graph.node(entry.node), walk.hip);
     behind += side < -walk.hip_bound;
     in_front += side > walk.hip_bound;
   });

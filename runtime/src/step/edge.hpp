@@ -23,7 +23,7 @@ template <class Geometry, class Real = typename Geometry::Real>
   for (int k = 0; k < faces; ++k) {
     const NodeRef<Geometry> node = walk.graph.node(connection.node(k));
     sides->side[k] = walk.side(node);
-    sides->voronoi[k] = node.voronoi_plane(connection.side(k)).distance(walk.hip);
+    sides->voronoi[k] = distance_beyond(node, connection.side(k), walk.hip);
   }
 }
 

@@ -174,7 +174,7 @@ template <class Geometry, class Real = typename Geometry::Real>
 inline uint32_t side_under(const Walk<Geometry>& walk, NodeRef<Geometry> node) {
   const Real rounding = rim_rounding(walk.god_object, Real(walk.graph.header()->extent));
   for (uint32_t k = 0; k < node.side_count(); ++k) {
-    if (node.voronoi_plane(k).distance(walk.god_object) >= -rounding && is_between_ends(node, k, walk.god_object)) return k;
+    if (distance_beyond(node, k, walk.god_object) >= -rounding && is_between_ends(node, k, walk.god_object)) return k;
   }
   return FDCG_NONE;
 }
@@ -183,7 +183,7 @@ inline uint32_t side_under(const Walk<Geometry>& walk, NodeRef<Geometry> node) {
 // to the face's rim but for rounding may be behind the faces across, so it is seated there first.
 template <class Geometry>
 [[gnu::noinline, gnu::cold]] Feature leave_face(Walk<Geometry>& walk, NodeRef<Geometry> node) {
-  if (!(walk.seat == kFree)) return walk.seat;
+  if (!walk.seat.is_free()) return walk.seat;
   const uint32_t side = side_under(walk, node);
   if (side == FDCG_NONE) {
     walk.god_object = foot_on(node, walk.god_object);
@@ -199,7 +199,7 @@ template <class Geometry, class Real = typename Geometry::Real>
   const NodeRef<Geometry> node = walk.graph.node(walk.active.index);
   if (move.kind == Kind::leaves) return go_to(FDCG_MUTANT("seat") ? kFree : leave_face(walk, node));
   if (move.kind == Kind::slides) {
-    const Real off = is_far(walk.graph, walk.hip) ? node.plane().distance(move.target) : Real(0);
+    const Real off = is_far(walk.graph, walk.hip) ? distance_from(node, move.target) : Real(0);
     if (absolute(off) <= kMostOffPlane<Real> * node.extent()) walk.place(move.target - node.normal() * off, kFree);
   }
   if (move.kind != Kind::crosses) return rest();

@@ -176,7 +176,7 @@ class FanSweep : public NodeEntry<Geometry> {
     const double sine = norm(normal);
     const double off = is_a_longest ? sine * length_b : is_b_longest ? sine * length_a : sine * (length_a / length) * length_b;
     const double at = -dot(a, along);  // where it is nearest to the corner
-    if (left_ == kFree && is_met(fan, corner, at / length, off)) return false;
+    if (left_.is_free() && is_met(fan, corner, at / length, off)) return false;
     const double nearest = at > 0 && at < length ? off : length_a < length_b ? length_a : length_b;
     const bool is_inexact = (fan.flags & FDCG_RUN_INEXACT) != 0;  // and may be entered beside the way
     Real beside = is_inexact ? seen(slab_ + from_bound_ + to_bound_, static_cast<Real>(nearest)) : Real(0);
@@ -190,7 +190,7 @@ class FanSweep : public NodeEntry<Geometry> {
     beside += kDirectionRounding<Real>;
     // A wall there is off the start by its plane's rounding, and by a quarter of that beyond its sides.
     constexpr Real kOffWall = Real(1.0625);
-    arc->around_start = left_ == kFree ? Real(-1) : beside + seen(kOffWall * from_bound_, static_cast<Real>(length_a));
+    arc->around_start = left_.is_free() ? Real(-1) : beside + seen(kOffWall * from_bound_, static_cast<Real>(length_a));
     arc->slack = sine > kArcRounding ? beside + static_cast<Real>(kArcRounding / sine) : kAnywhere;
     arc->padding = dot(start, end) > 0 ? beside + static_cast<Real>(bulge) : kAnywhere;
     arc->start_share = static_cast<Real>(length_a / (length_a + length_b));

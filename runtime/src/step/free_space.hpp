@@ -34,7 +34,7 @@ template <class Geometry, class Real = typename Geometry::Real>
     const EdgeLine<Real> line(walk.graph, first.feature.index);
     walk.active = place_on_edge(walk, first.feature.index, line, line.parameter(point));
   } else {
-    walk.place(first.feature == kFree ? to : point, kFree);
+    walk.place(first.feature.is_free() ? to : point, kFree);
   }
 }
 
@@ -129,22 +129,22 @@ template <class Geometry, class Real = typename Geometry::Real>
 inline uint32_t sweep_with_loan(Walk<Geometry>& walk, Feature left, const Vec3<Real>& stood, FreeSpace* space) {
   CarriedSweep* const carried = &space->inner->sweep;
   ClearBall* const ball = &space->inner->clear_ball;
-  if (!(left == kFree && space->looks_for_balls && is_in_clear_ball(*ball, widen(walk.hip)))) end_clear_ball(ball);
+  if (!(left.is_free() && space->looks_for_balls && is_in_clear_ball(*ball, widen(walk.hip)))) end_clear_ball(ball);
   if (carried->is_carried != 0) {
     if (!finish_carried_sweep(walk, carried, &space->work_left)) return FDCG_RESULT_SWEEP_BOUND;
-    if (!(walk.active == kFree)) return 0;
+    if (!walk.active.is_free()) return 0;
   }
   // Two features at one point may pass the contact to each other by way of free space. Within a tick the trail detects that;
   // here each pass has taken a tick, and the contact rests where it is (contact-model LEAVE-4).
   constexpr uint32_t kMostStalledSweeps = 4;
-  if (!(left == kFree) && carried->stalled_sweeps >= kMostStalledSweeps) {
+  if (!left.is_free() && carried->stalled_sweeps >= kMostStalledSweeps) {
     carried->stalled_sweeps = 0;
     walk.active = left;
     return 0;
   }
-  const Vec3<Real> to = walk.hip, from = left == kFree ? near_start(walk.graph, walk.god_object, to) : walk.god_object;
+  const Vec3<Real> to = walk.hip, from = left.is_free() ? near_start(walk.graph, walk.god_object, to) : walk.god_object;
   const bool is_still = from.x == to.x && from.y == to.y && from.z == to.z;  // no way, no direction
-  const bool may_look = FDCG_WITH_CLEAR_BALLS && space->looks_for_balls && left == kFree && walk.graph.hierarchy() != nullptr;
+  const bool may_look = FDCG_WITH_CLEAR_BALLS && space->looks_for_balls && left.is_free() && walk.graph.hierarchy() != nullptr;
   const bool has_looked = may_look && !(ball->radius2 > 0) && is_in_new_ball(walk.graph, from, to, space->inner);
   if (is_still || (has_looked && passes_near_nodes(walk.graph, *space->inner, from, to))) {
     walk.place(to, kFree);
@@ -152,13 +152,13 @@ inline uint32_t sweep_with_loan(Walk<Geometry>& walk, Feature left, const Vec3<R
     return 0;
   }
   walk.god_object = from;
-  Sweep<Geometry> sweep(walk.graph, left == kFree ? from : stood, from, to, left, &space->work_left);
+  Sweep<Geometry> sweep(walk.graph, left.is_free() ? from : stood, from, to, left, &space->work_left);
   FirstHit<Real> first;
   const bool is_in_ball = ball->radius2 > 0 && ball->lists_all != 0;  // nothing but what it lists can be met
   if (is_in_ball) sweep.run_near(space->inner->near.node, ball->near_count, &first);
   if (is_in_ball || sweep.run(&first)) {
     arrive(walk, sweep, to, first);
-    if (walk.active == kFree) {
+    if (walk.active.is_free()) {
       carried->stalled_sweeps = 0;
     } else {
       end_clear_ball(ball);

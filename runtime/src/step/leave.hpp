@@ -18,7 +18,7 @@ template <class Geometry, class Real = typename Geometry::Real>
   constexpr int kMostMoves = 16;  // each twice the one before
   const Real bound = plane_rounding_bound(walk.graph, walk.god_object);
   const Real least = least_step_clear<Real>(walk.graph.header()->extent);
-  const Real behind = absolute(node.plane().distance(walk.god_object));
+  const Real behind = absolute(distance_from(node, walk.god_object));
   Real step = behind > least ? behind : least;
   for (int i = 0; i < kMostMoves; ++i, step = 2 * step) {
     if (side_of(walk.graph, node, walk.god_object, bound, &walk.work_left) >= 0) break;

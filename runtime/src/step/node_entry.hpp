@@ -170,7 +170,7 @@ class NodeEntry {
     spend(work_left_, kNodeWork);
     const NodeRef<Geometry> node = graph_.node(n);
     if (FDCG_MUTANT("sweep-blind") && n % 5 == 3) return;
-    if (node.plane().distance(to_) > to_bound_ || (is_left_out(n, node) && !FDCG_MUTANT("leave-out")))
+    if (distance_from(node, to_) > to_bound_ || (is_left_out(n, node) && !FDCG_MUTANT("leave-out")))
       return;  // before any exact sign is computed
     const Lies lies = lies_surely(node);
     if (lies == Lies::beside) return;
@@ -204,7 +204,7 @@ class NodeEntry {
       // Out of the slab over a convex side, in front at its end of the face across by more than that one's slab: no edge would
       // hold it (EDGE-1), and it has come below neither face.
       if (side_left != FDCG_NONE && graph_.connection(node.connection(side_left)).type() == FDCG_CONVEX &&
-          graph_.node(node.across(side_left)).plane().distance(to_) > slab_)
+          distance_from(graph_.node(node.across(side_left)), to_) > slab_)
         return;
       met_exactly = 0;
     }
@@ -247,7 +247,7 @@ class NodeEntry {
   }
 
   [[nodiscard, gnu::noinline]] Real side(NodeRef<Geometry> node, const Vec3<Real>& x, Real bound) const {
-    if (absolute(node.plane().distance(x)) <= bound) spend(work_left_, kNearPlaneWork);
+    if (absolute(distance_from(node, x)) <= bound) spend(work_left_, kNearPlaneWork);
     return side_of(graph_, node, x, bound, work_left_);
   }
 
@@ -271,7 +271,7 @@ class NodeEntry {
   // wall; that wall must hold it. Where the way crossed the wall cannot be told, for the same reason: it counts if the way
   // begins over it.
   [[gnu::noinline, gnu::cold]] void try_other_wall(uint32_t n, NodeRef<Geometry> node) {
-    if (left_ == kFree || !is_before_best(0, n)) return;
+    if (left_.is_free() || !is_before_best(0, n)) return;
     const Plane<Real> plane = node.plane();
     // The offset is as good as the products at a corner that it makes up for; it may have cancelled to much less than them.
     const Vec3<Real> corner = graph_.corner_point(node.corner(0)), normal = plane.normal;
@@ -407,13 +407,13 @@ class NodeEntry {
     if (!graph_.has_inexact_nodes()) return false;
     spend(work_left_, kNodeWork);
     const Vec3<Real> point = point_at(fraction);
-    const bool is_near = node.voronoi_plane(k).distance(point) <= slab_;
+    const bool is_near = distance_beyond(node, k, point) <= slab_;
     const uint32_t type = graph_.connection(node.connection(k)).type();
     if (is_near && (type == FDCG_CONCAVE || type == FDCG_CONVEX)) {
       const NodeRef<Geometry> wall = graph_.node(node.across(k));
-      const bool begins_in_slab = wall.plane().distance(from_) >= -slab_;
-      if (type == FDCG_CONVEX ? !begins_in_slab && wall.plane().distance(point) < 0
-                              : wall.is_inexact() && begins_in_slab && wall.plane().distance(to_) >= 0)
+      const bool begins_in_slab = distance_from(wall, from_) >= -slab_;
+      if (type == FDCG_CONVEX ? !begins_in_slab && distance_from(wall, point) < 0
+                              : wall.is_inexact() && begins_in_slab && distance_from(wall, to_) >= 0)
         return true;
     }
     *must_wind = true;
@@ -463,7 +463,7 @@ class NodeEntry {
       const Real u = line.parameter(point);
       const Vec3<Real> off = point - (line.start + line.direction * (u < 0 ? Real(0) : u > line.length ? line.length : u));
       const Real off2 = dot(off, off);
-      if (nearest == kFree || off2 < nearest2) {
+      if (nearest.is_free() || off2 < nearest2) {
         nearest = {FDCG_EDGE, node.connection(k)};
         nearest2 = off2;
       }

@@ -126,10 +126,10 @@ template <class Geometry, class Real = typename Geometry::Real>
 Progress move_god_object(Walk<Geometry>& walk, Feature start, Vec3<Real> start_gap, Feature hopped, const Decision* decided,
                          FreeSpace* space) {
   Progress progress = {0, 0};
-  if (walk.active == kFree) {
+  if (walk.active.is_free()) {
     if (FDCG_MUTANT("last-tick-segment")) walk.god_object = walk.hip;
     progress.flags = sweep_to_hip(walk, kFree, walk.god_object, space);
-    if (walk.active == kFree) return progress;
+    if (walk.active.is_free()) return progress;
     ++progress.transitions;
     start = walk.active;
     start_gap = walk.god_object - walk.hip;
@@ -137,7 +137,7 @@ Progress move_god_object(Walk<Geometry>& walk, Feature start, Vec3<Real> start_g
     space->inner->sweep.stalled_sweeps = 0;  // none was carried here
   }
   Trail<Geometry> trail(start, start_gap);
-  if (!(hopped == kFree)) trail.begin_nearer(hopped);
+  if (!hopped.is_free()) trail.begin_nearer(hopped);
   while (true) {
     const Feature at = walk.active;
     const Decision decision = decided != nullptr ? *decided : apply_rule(walk);
@@ -150,12 +150,12 @@ Progress move_god_object(Walk<Geometry>& walk, Feature start, Vec3<Real> start_g
     ++progress.transitions;
     if (FDCG_MUTANT("walk-cut") && progress.transitions > 3) return progress;
     if (walk.active.state == FDCG_FACE) walk.graph.prefetch_around(walk.graph.node(walk.active.index));
-    if (walk.active == kFree) {
+    if (walk.active.is_free()) {
       if (trail.has_come_nearer()) space->inner->sweep.stalled_sweeps = 0;
       const Vec3<Real> stood = walk.god_object;
       step_clear_of(walk, at);
       progress.flags |= sweep_to_hip(walk, at, stood, space);
-      if (walk.active == kFree) return progress;
+      if (walk.active.is_free()) return progress;
       ++progress.transitions;
     }
     if (!FDCG_MUTANT("met-again") && trail.has_met_again(walk) && !trail.retry_without_residual(walk) &&

@@ -38,7 +38,7 @@ namespace {
 // Whether the graph has such a feature; used by an assertion only.
 [[maybe_unused]] bool is_of_graph(Feature feature, const fdcg_header& header) {
   const uint32_t count[] = {0, header.node_count, header.connection_count, header.corner_count};
-  return feature == kFree || (feature.state <= FDCG_VERTEX && feature.index < count[feature.state]);
+  return feature.is_free() || (feature.state <= FDCG_VERTEX && feature.index < count[feature.state]);
 }
 
 template <class Real>
@@ -108,7 +108,7 @@ template <class Geometry>
   const fdcg_params& params = *terms.params;
   ContactInternals& inner = internals_of(*contact);
   inner.slip_m_per_s = inner.stiffness_n_per_m = 0;
-  if (walk.active == kFree) return;
+  if (walk.active.is_free()) return;
   if (terms.has_last) terms.go_on_to(widen(walk.god_object));
   if (terms.has(FDCG_FRICTION_LAG)) inner.slip_m_per_s = (terms.lagged + terms.per_way * terms.way) * terms.unit_m;
   const Feature was = {contact->state, contact->feature};
@@ -137,7 +137,7 @@ template <class Geometry, class Real = typename Geometry::Real>
   const Progress progress = move_god_object(walk, start, start_gap, hopped, move != nullptr ? &decided : nullptr, &space);
   // On a surface it is within the object. Planes of a file that is SAFE, and not FULL, may lie up to four extents away from
   // their corners, and take it where no arithmetic holds any longer (contact-model TICK-8).
-  if (!(walk.active == kFree) && !is_usable(walk.god_object)) {
+  if (!walk.active.is_free() && !is_usable(walk.god_object)) {
     walk.god_object = walk.hip;
     walk.active = walk.seat = kFree;
   }
@@ -146,7 +146,7 @@ template <class Geometry, class Real = typename Geometry::Real>
   contact->sweep_bound_ticks += (progress.flags & FDCG_RESULT_SWEEP_BOUND) != 0;
   result->flags = progress.flags;
   result->transitions = transitions + progress.transitions;
-  const bool is_free = walk.active == kFree;
+  const bool is_free = walk.active.is_free();
   if (walk.friction.terms == nullptr) {
     if (!is_free) respond(*walk.graph.header(), params, *contact, walk.hip, walk.god_object, result);
   } else if constexpr (FDCG_WITH_FRICTION_TERMS) {
@@ -311,7 +311,7 @@ inline bool hops_off_edge(const GraphView<Geometry>& graph, const Vec3<Real>& hi
   const NodeRef<Geometry> node = graph.node(face);
   spend(&hop->work_left, kEdgeWork + kTransitionWork + kSideWork * node.side_count());
   hop->node = face;
-  hop->side = node.plane().distance(hip);
+  hop->side = distance_from(node, hip);
   hop->transitions = 1;
   hop_to_hip(graph, hip, bound, false, hop);
   if (hop->transitions > 1 || ends_on_face(graph, hip, hop->move.kind, false)) return true;

@@ -83,7 +83,7 @@ FDCG_HOT bool slides_on_shaded_faces(const fdcg_graph& raw, Vec3<Real> hip, Vec3
   Vec3<Real> god_object = by_parts(tick->god_object);
   for (uint32_t hops = 0; hops < kMostShadedHops; ++hops) {
     const NodeRef<Geometry> node = graph.node(index);
-    const Real side = node.plane().distance(hip);
+    const Real side = distance_from(node, hip);
     if (!(side < -bound)) return false;
     if (field->of_node != uint64_t{index} + 1 && !make_kept_field(raw, graph, index, field)) return false;
     Vec3<Real> target;

@@ -22,6 +22,7 @@ struct Feature {
   uint32_t state = FDCG_FREE;  // fdcg_state
   uint32_t index = FDCG_NONE;
 
+  [[nodiscard]] bool is_free() const { return state == FDCG_FREE; }
   friend bool operator==(Feature a, Feature b) { return a.state == b.state && a.index == b.index; }
 };
 inline constexpr Feature kFree = {};
@@ -71,7 +72,7 @@ struct Walk {
 // The foot of a place on a node's plane.
 template <class Geometry, class Real = typename Geometry::Real>
 [[gnu::noinline, gnu::cold]] Vec3<Real> foot_on(NodeRef<Geometry> node, const Vec3<Real>& x) {
-  return x - node.normal() * node.plane().distance(x);
+  return x - node.normal() * distance_from(node, x);
 }
 
 // What a step did besides moving the god-object (contact-model RESP-3).
