@@ -46,6 +46,12 @@ class Reference(HashCase):
         self.assertNotEqual(lines[0][1], lines[1][1])
 
 
+    def test_without_short_ways(self):
+        self.need("gcc", "g++")
+        flags = ["-O2", "-DFDCG_WITH_FAST_FACES=0", "-DFDCG_WITH_CLEAR_BALLS=0"]
+        self.assert_same_bits(self.hashed_by("rules", "gcc", "g++", flags, ARRAYS), "without short ways")
+
+
 class Gcc(HashCase):
     def test_every_level(self):
         self.need("gcc", "g++")

@@ -32,6 +32,11 @@
 #define FDCG_WITH_MESSAGES 1
 #endif
 
+// Without these either the message is empty, and the texts are in programs that call fdcg_status_text.
+#ifndef FDCG_WITH_STATUS_TEXTS
+#define FDCG_WITH_STATUS_TEXTS 1
+#endif
+
 // fdcg_params.friction_flags: the friction curve, materials. Without them the library is smaller (README.md), and
 // fdcg_check_params refuses them.
 #ifndef FDCG_WITH_FRICTION_TERMS
@@ -55,10 +60,21 @@
 #define FDCG_WITH_INEXACT_NODES 1
 #endif
 
+// Graphs of derived planes or edges (fdcg compile --planes derived). A library without refuses them (FDCG_E_VERSION).
+#ifndef FDCG_WITH_DERIVED_PLANES
+#define FDCG_WITH_DERIVED_PLANES 1
+#endif
+
 // The ball around a free contact that no face touches (contact-model FREE-7). It spares a free hand's sweeps and changes
 // nothing that is felt; without it the library is smaller.
 #ifndef FDCG_WITH_CLEAR_BALLS
 #define FDCG_WITH_CLEAR_BALLS 1
+#endif
+
+// A short way of ticks on a face. Nothing that is felt depends on it; without it the library is smaller, and such ticks take
+// longer.
+#ifndef FDCG_WITH_FAST_FACES
+#define FDCG_WITH_FAST_FACES 1
 #endif
 
 // Short ways along edges, onto them and off them (step/along_edge.hpp). Nothing that is felt depends on them; without them the

@@ -103,7 +103,7 @@ Message::Message(fdcg_error* error, fdcg_status status, uint64_t offset) : statu
   if (error == nullptr) return;
   error->status = status;
   error->offset = offset;
-  const char* words = fdcg_status_text(status);
+  const char* words = FDCG_WITH_STATUS_TEXTS ? fdcg_status_text(status) : "";
   uint32_t length = 0;
   for (; words[length] != '\0' && length + 1 < sizeof error->message; ++length)
     error->message[length] = words[length];

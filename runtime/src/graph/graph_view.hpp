@@ -217,7 +217,7 @@ struct GraphView : Geometry {
   }
   // A connection's direction: where edges are stored, without a look at its ends.
   [[nodiscard]] Vec3<Real> direction(uint32_t connection_index) const {
-    if (this->edges() != nullptr) return vec(this->edges()[connection_index].direction);
+    if (this->has_edges()) return vec(this->edges()[connection_index].direction);
     return edge(connection_index).direction;
   }
   template <class... Where>
@@ -233,7 +233,7 @@ struct GraphView : Geometry {
   FDCG_HOT void prefetch_crossing(NodeRef<Geometry> here, uint32_t k) const {
     __builtin_prefetch(&this->connections()[here.connection(k)]);
     __builtin_prefetch(&this->corners()[here.corner(k)]);
-    if (this->edges() != nullptr) __builtin_prefetch(&this->edges()[here.connection(k)]);
+    if (this->has_edges()) __builtin_prefetch(&this->edges()[here.connection(k)]);
     if (here.across(k) == FDCG_NONE) return;
     const unsigned char* const block = node(here.across(k)).block();
     const uint32_t bytes = node_bytes<Real>(kPrefetchedSides, this->has_planes());
@@ -246,7 +246,7 @@ struct GraphView : Geometry {
       prefetch_crossing(here, k);
   }
   // With stored planes and edges, as files are by default.
-  [[nodiscard]] bool is_plain() const { return this->edges() != nullptr && this->has_planes(); }
+  [[nodiscard]] bool is_plain() const { return this->has_edges() && this->has_planes(); }
   // The same of one side in a plain graph, without a branch: what lies across a border is node 0 here.
   FDCG_HOT void prefetch_plainly(const fdcg_side& side) const {
     constexpr uint32_t kBytes = node_bytes<Real>(kPrefetchedSides, true);

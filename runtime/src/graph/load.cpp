@@ -112,6 +112,12 @@ fdcg_status check_header_values(const fdcg_header& header, fdcg_error* error) {
              " off their corners, this library was built without such; compile the mesh with --coplanar exact, or the library "
              "with FDCG_WITH_INEXACT_NODES");
   }
+  if (!FDCG_WITH_DERIVED_PLANES && (header.flags & FDCG_STORED_PLANES) == 0) {
+    return Message(error, FDCG_E_VERSION, offsetof(fdcg_header, flags))
+        .text(
+            "the planes of the faces' sides are to be derived, this library was built without that; compile the mesh with "
+            "--planes stored, or the library with FDCG_WITH_DERIVED_PLANES");
+  }
   const double largest = largest_extent(header);
   if (!in_range(header.extent, 1 / largest, largest)) {
     return Message(error, FDCG_E_LAYOUT, offsetof(fdcg_header, extent))
@@ -147,8 +153,8 @@ struct SectionRule {
 constexpr SectionRule kSectionRules[] = {
     {FDCG_SECTION_NODES, 0, 0, Presence::required, kNowhere, POINTER(nodes)},
     {FDCG_SECTION_NODE_OFFSETS, 4, 4, Presence::of_mixed_nodes, COUNT(node_count), POINTER(node_offsets)},
-    {FDCG_SECTION_EDGES, sizeof(fdcg_connection_geometry_f64), sizeof(fdcg_connection_geometry_f32), Presence::optional,
-     COUNT(connection_count), POINTER(edges)},
+    {FDCG_SECTION_EDGES, sizeof(fdcg_connection_geometry_f64), sizeof(fdcg_connection_geometry_f32),
+     FDCG_WITH_DERIVED_PLANES ? Presence::optional : Presence::required, COUNT(connection_count), POINTER(edges)},
     {FDCG_SECTION_CONNECTIONS, sizeof(fdcg_connection), sizeof(fdcg_connection), Presence::required, COUNT(connection_count),
      POINTER(connections)},
     {FDCG_SECTION_CORNERS, sizeof(fdcg_corner_f64), sizeof(fdcg_corner_f32), Presence::required, COUNT(corner_count),

@@ -5,6 +5,7 @@
 // members below, with the same contracts.
 #pragma once
 
+#include "base/config.hpp"
 #include "fdcg/fdcg.h"
 #include "graph/record_types.hpp"
 #include "shared/derive.hpp"
@@ -29,6 +30,7 @@ struct GraphRecords {
   [[nodiscard]] const uint32_t* node_offsets() const { return raw_->node_offsets; }  // null: each block has block_bytes
   [[nodiscard]] size_t block_bytes() const { return raw_->header->node_bytes; }
   [[nodiscard]] bool has_planes() const { return (raw_->header->flags & FDCG_STORED_PLANES) != 0; }
+  [[nodiscard]] bool has_edges() const { return raw_->edges != nullptr; }
   [[nodiscard]] const fdcg_connection* connections() const { return raw_->connections; }
   [[nodiscard]] const StoredEdge* edges() const { return static_cast<const StoredEdge*>(raw_->edges); }  // null: derived
   [[nodiscard]] const Corner* corners() const { return static_cast<const Corner*>(raw_->corners); }
@@ -58,6 +60,10 @@ struct RigidGeometry : GraphRecords<RealType> {
 
   using GraphRecords<Real>::GraphRecords;
 
+  // What the library was built without no graph has (load.cpp).
+  [[nodiscard]] bool has_planes() const { return !FDCG_WITH_DERIVED_PLANES || GraphRecords<Real>::has_planes(); }
+  [[nodiscard]] bool has_edges() const { return !FDCG_WITH_DERIVED_PLANES || GraphRecords<Real>::has_edges(); }
+
   // Before a node's plane and flags, or a corner's normal, are read from their records.
   void bring_up_to_date(NodeKey) const {}
   void bring_normal_up_to_date(const Corner&) const {}
@@ -71,7 +77,7 @@ struct RigidGeometry : GraphRecords<RealType> {
   // and reload the numbers.
   void read_edge_between(uint32_t connection, uint32_t corner0, uint32_t corner1, Edge<Real>* edge) const {
     const Corner& from = this->corners()[corner0];
-    if (this->edges() == nullptr) {
+    if (!has_edges()) {
       *edge = derive_edge(vec(from.point), corner_point(corner1));
       return;
     }

@@ -132,9 +132,15 @@ template <class Geometry, class Real = typename Geometry::Real>
   const Feature start = walk.active, hopped = transitions != 0 ? walk.seat : kFree;
   Decision decided = rest();
   if (move != nullptr) decided = carry_out(walk, *move);
+  const bool asks_face = !FDCG_WITH_FAST_FACES && start.state == FDCG_FACE && walk.friction.terms == nullptr;
+  if (asks_face) {  // not billed: nor is what a short way finds of its first face
+    decided = face_rule(walk);
+    walk.work_left = kRuleWork;
+  }
   ContactInternals& inner = internals_of(*contact);
   FreeSpace space = {&inner, (params.disabled_optimizations & FDCG_STEP_OPT_CLEAR_BALL) == 0, kSweepWork, contact->hip};
-  const Progress progress = move_god_object(walk, start, start_gap, hopped, move != nullptr ? &decided : nullptr, &space);
+  const Progress progress =
+      move_god_object(walk, start, start_gap, hopped, move != nullptr || asks_face ? &decided : nullptr, &space);
   // On a surface it is within the object. Planes of a file that is SAFE, and not FULL, may lie up to four extents away from
   // their corners, and take it where no arithmetic holds any longer (contact-model TICK-8).
   if (!walk.active.is_free() && !is_usable(walk.god_object)) {
@@ -223,7 +229,7 @@ FDCG_HOT void step_with_flags(const fdcg_graph& raw, const fdcg_params& params, 
 
 // Not on a mesh whose corners move, where work is counted as numbers are renewed, nor where a test takes rules out; and a
 // library built for size does without.
-#if defined(__OPTIMIZE_SIZE__) || FDCG_WITH_MUTANTS == 1
+#if defined(__OPTIMIZE_SIZE__) || FDCG_WITH_MUTANTS == 1 || !FDCG_WITH_FAST_FACES
 template <class Geometry>
 inline constexpr bool kHasHops = false;
 #else
@@ -235,7 +241,7 @@ template <class Geometry>
 inline constexpr bool kHasEdgeHops = FDCG_WITH_FAST_EDGES&& kHasHops<Geometry>;
 
 // Whether a tick on a face has a short way of its own; a library built for size has one way for all.
-#ifdef __OPTIMIZE_SIZE__
+#if defined(__OPTIMIZE_SIZE__) || !FDCG_WITH_FAST_FACES
 inline constexpr bool kGlances = false;
 #else
 inline constexpr bool kGlances = true;
@@ -375,6 +381,16 @@ FDCG_OUTLINED void step_on(const fdcg_graph& raw, const fdcg_params& params, con
   walk_to_hip<Geometry, Real>(walk, has_move ? &hop.move : nullptr, hop.transitions, params, contact, result);
 }
 
+// All of a tick by the rules, where the library has no short ways.
+template <class Geometry, class Real = typename Geometry::Real>
+inline void step_by_rules(const fdcg_graph& raw, const fdcg_params& params, const Vec3<Real>& hip, fdcg_contact* contact,
+                          fdcg_result* result) {
+  const GraphView<Geometry> graph(raw);
+  Walk<Geometry> walk(graph, friction_of<Real>(params, *contact), nullptr, hip, plane_rounding_bound(graph, hip),
+                      narrow<Real>(contact->god_object), {contact->state, contact->feature}, seat_of(*contact), kRuleWork);
+  walk_to_hip<Geometry, Real>(walk, nullptr, 0, params, contact, result);
+}
+
 // A god-object that stays on its face, at rest or sliding, is what a servo loop meets most (contact-model TICK-7): what such a
 // tick does not need is made in step_on().
 template <class Geometry, class Real = typename Geometry::Real>
@@ -398,7 +414,9 @@ void step(const fdcg_graph& raw, const fdcg_params& params, fdcg_contact* contac
   } else if (FDCG_WITH_FRICTION_TERMS && params.friction_flags != 0) {
     if constexpr (FDCG_WITH_FRICTION_TERMS) return step_with_flags<Geometry>(raw, params, hip, contact, result);
   } else {
-    if (kGlances && contact->state == FDCG_FACE) {
+    if constexpr (!FDCG_WITH_FAST_FACES) {
+      step_by_rules<Geometry>(raw, params, hip, contact, result);
+    } else if (kGlances && contact->state == FDCG_FACE) {
       const GraphView<Geometry> graph(raw);
       const FaceTick<Real> tick =
           look_at_face(graph, params, *contact, by_parts(hip), plane_rounding_bound(graph, by_parts(hip)));
