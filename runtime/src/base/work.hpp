@@ -20,6 +20,9 @@ inline constexpr uint32_t kRuleWork = FDCG_RULE_WORK;
 #endif
 inline constexpr uint32_t kSweepWork = FDCG_SWEEP_WORK;
 
+// Of one look for a clear ball.
+inline constexpr uint32_t kClearWork = 1200;
+
 // Of one step on a deformable mesh, all that it brings up to date (deform_upkeep.hpp): some 90,000 instructions. Where it is
 // spent the step's sweeps have no work left either.
 #ifndef FDCG_UPKEEP_WORK
@@ -32,6 +35,8 @@ inline constexpr uint32_t kLeafWork = 4;          // a leaf taken up, besides it
 inline constexpr uint32_t kGlanceWork = 3;        // one node fetched, both ends of the way against its plane
 inline constexpr uint32_t kNodeWork = 5;          // ... and where that does not decide
 inline constexpr uint32_t kBesideWork = 1;        // ... both ends of the way against one of its sides
+inline constexpr uint32_t kClearVisitWork = 25;   // a record or a leaf and its nodes, how far from a place
+inline constexpr uint32_t kDerivedSideWork = 16;  // ... and one side's Voronoi plane where it has to be derived
 inline constexpr uint32_t kNearPlaneWork = 18;    // ... one end so near that its side is found from the corners
 inline constexpr uint32_t kOrientationWork = 6;   // one side's edge against the way, where rounding cannot matter
 inline constexpr uint32_t kPairsWork = 30;        // ... and where it does: 450 instructions

@@ -12,9 +12,6 @@
 
 namespace fdcg {
 
-// Records and leaves that one look may open: what has been proved clear by then is taken.
-inline constexpr int kMostClearVisits = 48;
-
 // `hip`: in double whatever the graph's reals, which is at hand sooner. Rounding it to them moves it by far less than
 // clear_radius leaves as a margin.
 inline bool is_in_clear_ball(const ClearBall& ball, Vec3<double> hip) {
@@ -26,12 +23,14 @@ inline bool is_in_clear_ball(const ClearBall& ball, Vec3<double> hip) {
 // nearer than `nearest`: only what may be is worth its sides. A node whose corners lie off its plane is as near as that slab: a
 // way may enter it from beside.
 template <class Geometry, class Real = typename Geometry::Real>
-inline Real node_distance(const GraphView<Geometry>& graph, NodeRef<Geometry> node, Vec3<Real> at, Real nearest) {
+inline Real node_distance(const GraphView<Geometry>& graph, NodeRef<Geometry> node, Vec3<Real> at, Real nearest,
+                          uint32_t* work_left) {
   const Real from_plane = absolute(distance_from(node, at));
   if (node.is_inexact()) return from_plane - static_cast<Real>(graph.max_deviation());
   if (!(from_plane < nearest)) return from_plane;
+  if (!graph.has_planes()) spend(work_left, kDerivedSideWork * node.side_count());
   Real beside = 0;
-  for (uint32_t k = 0; k < node.side_count(); ++k) {
+  for (uint32_t k = 0; k < node.side_count() && beside < nearest; ++k) {
     const Real beyond = distance_beyond(node, k, at);
     if (beyond > beside) beside = beyond;
   }
@@ -104,13 +103,15 @@ class NearestNodes {
 // corner and none of its faces (contact-model FREE-8).
 template <class Geometry, class Real = typename Geometry::Real>
 inline void look_at_leaf(const GraphView<Geometry>& graph, uint32_t leaf, Vec3<Real> at, Real least,
-                         NearestNodes<Geometry>* nearest) {
+                         NearestNodes<Geometry>* nearest, uint32_t* work_left) {
   const uint32_t first = leaf * FDCG_LEAF_NODES, end = first + FDCG_LEAF_NODES;
+  uint32_t run = FDCG_NONE;
   for (uint32_t n = first; n < end && n < graph.header()->node_count; ++n) {
-    const Real beside = node_distance(graph, graph.node(n), at, nearest->limit()), distance = beside > least ? beside : least;
+    const Real beside = node_distance(graph, graph.node(n), at, nearest->limit(), work_left),
+               distance = beside > least ? beside : least;
     if (!(distance < nearest->limit())) continue;
     if constexpr (Geometry::kKeepsDirections) {
-      const uint32_t run = fan_run_of(graph, n);
+      run = fan_run_of(graph, n, run);
       if (run != FDCG_NONE) {
         const uint32_t corner = graph.busy_corners()[graph.fan_runs()[run].busy].corner;
         nearest->block(norm(graph.corner_point(corner) - at) - static_cast<Real>(graph.max_deviation()));
@@ -136,7 +137,7 @@ template <class Geometry, class Real = typename Geometry::Real>
 
 // The radius of a ball around `at` that no face reaches into but those of `near`, which the ball counts, by more than the
 // rounding of a sweep inside it: such a sweep finds nothing else. 0 where it would be below `way`. Cost: at most
-// kMostClearVisits records and leaves, a handful where nothing is near.
+// kClearWork, where planes are stored 48 records and leaves; a handful where nothing is near.
 template <class Geometry, class Real = typename Geometry::Real>
 [[gnu::noinline, gnu::hot]] Real clear_radius(const GraphView<Geometry>& graph, const Vec3<Real>& at, Real way, NearNodes* near,
                                               ClearBall* ball) {
@@ -160,16 +161,17 @@ template <class Geometry, class Real = typename Geometry::Real>
   NearestNodes<Geometry> nearest(graph, reach * unit);
   const BoxTree tree(graph.header()->node_count);
   WaitingBoxes waiting(tree);
-  for (int visits = 0; !waiting.is_empty() && clear2 > too_near2;) {
+  uint32_t work_left = kClearWork;
+  while (!waiting.is_empty() && clear2 > too_near2) {
     const WaitingBoxes::Item next = waiting.pop();
     if (!(next.key < clear2)) continue;
-    if (visits == kMostClearVisits || !(next.key < kOpened * limit2)) {
+    if (work_left == 0 || !(next.key < kOpened * limit2)) {
       clear2 = next.key;
       continue;
     }
-    ++visits;
+    spend(&work_left, kClearVisitWork);
     if (next.level < 0) {
-      look_at_leaf(graph, next.index, at, static_cast<Real>(root(next.key)) * unit, &nearest);
+      look_at_leaf(graph, next.index, at, static_cast<Real>(root(next.key)) * unit, &nearest, &work_left);
       const float limit = static_cast<float>(nearest.limit() * per_unit);
       limit2 = limit * limit;
       clear2 = limit2 < clear2 ? limit2 : clear2;

@@ -126,19 +126,18 @@ class NodeEntry {
                          widen(graph_.corner_point(node.corner(end))), work_left_);
   }
 
-  // Outward of the face that the way leaves, or of that face at the edge which it is in front of since LEAVE-2, if the corner
-  // is one of its own: the way meets nothing behind that. Else not set.
-  [[gnu::noinline, gnu::cold]] void find_outward_of_left(uint32_t corner, Vec3<Real>* outward) const {
+  // The face that the way leaves, or that face at the edge which it is in front of since LEAVE-2, if the corner is one of its
+  // own: the way meets nothing behind that. Else FDCG_NONE.
+  [[nodiscard, gnu::noinline, gnu::cold]] uint32_t left_face_before_way(uint32_t corner) const {
     const bool is_edge = left_.state == FDCG_EDGE;
     uint32_t n = left_.state == FDCG_FACE ? left_.index : FDCG_NONE;
     for (uint32_t k = 0; k < 2; ++k) {
       if (is_edge) n = graph_.connection(left_.index).node(k);
-      if (n == FDCG_NONE) return;
+      if (n == FDCG_NONE) break;
       const NodeRef<Geometry> face = graph_.node(n);
-      if (!(side(face, to_, to_bound_) >= 0)) continue;
-      if (has_corner(face, corner)) *outward = face.normal();
-      return;
+      if (side(face, to_, to_bound_) >= 0) return has_corner(face, corner) ? n : FDCG_NONE;
     }
+    return FDCG_NONE;
   }
 
  private:
