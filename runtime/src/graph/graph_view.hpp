@@ -250,7 +250,9 @@ struct GraphView : Geometry {
   // The same of one side in a plain graph, without a branch: what lies across a border is node 0 here.
   FDCG_HOT void prefetch_plainly(const fdcg_side& side) const {
     constexpr uint32_t kBytes = node_bytes<Real>(kPrefetchedSides, true);
-    __builtin_prefetch(&this->corners()[side.corner]);
+    const auto& point = this->corners()[side.corner].point;  // may lie across two lines
+    __builtin_prefetch(&point);
+    __builtin_prefetch(reinterpret_cast<const unsigned char*>(&point) + sizeof point - 1);
     __builtin_prefetch(&this->edges()[side.link >> 1]);
     const unsigned char* const block = node(side.across == FDCG_NONE ? 0 : side.across).block();
 #pragma GCC unroll 8
