@@ -16,10 +16,12 @@ uint64_t small_checksum(const void* data, uint32_t bytes) {
   uint64_t lanes[kLaneCount], sum = kSeed ^ bytes;
   for (uint32_t i = 0; i < kLaneCount; ++i)
     lanes[i] = kSeed + i * kMultiplier;
-  for (uint32_t i = 0; i < words || i % kLaneCount != 0; ++i) {  // zeros up to the end of a stripe
-    uint64_t word = 0;
-    if (i < words) memcpy(&word, static_cast<const unsigned char*>(data) + i * sizeof word, sizeof word);
-    lanes[i % kLaneCount] = absorbed(lanes[i % kLaneCount], word);
+  for (uint32_t stripe = 0; stripe < words; stripe += kLaneCount) {
+    for (uint32_t i = 0; i < kLaneCount; ++i) {
+      uint64_t word = 0;  // past the end
+      if (stripe + i < words) memcpy(&word, static_cast<const unsigned char*>(data) + (stripe + i) * sizeof word, sizeof word);
+      lanes[i] = absorbed(lanes[i], word);
+    }
   }
   for (const uint64_t lane : lanes)
     sum = absorbed(sum, lane);
