@@ -19,7 +19,8 @@ class Fdcg(ConanFile):
     settings = "os", "arch", "compiler", "build_type"
     options = {"with_f64": [True, False], "with_f32": [True, False], "with_files": [True, False], "with_messages": [True, False],
                "with_friction_terms": [True, False], "with_busy_corners": [True, False], "with_inexact_nodes": [True, False],
-               "with_clear_balls": [True, False], "with_fast_edges": [True, False], "with_shading": [True, False]}
+               "with_clear_balls": [True, False], "with_fast_edges": [True, False], "with_shading": [True, False],
+               "with_derived_planes": [True, False], "with_fast_faces": [True, False], "with_status_texts": [True, False]}
     default_options = {name: True for name in options}
 
     def _root(self):
