@@ -20,7 +20,6 @@ print(round(contact.step((0.1, 0.1, 0.01)).force_n[2], 6), fdcg.__file__)
 class Pip(unittest.TestCase):
     def test_install(self):
         if subprocess.run([sys.executable, "-m", "pip", "--version"], capture_output=True, check=False).returncode != 0:
-            print("skipped=1: pip is missing")
             self.skipTest("pip is missing; tools/check installs it (group test of tools/packages)")
         with tempfile.TemporaryDirectory() as folder:
             done = subprocess.run([sys.executable, "-m", "pip", "install", "--no-index", "--no-deps", "--target", folder, str(FOLDER)],

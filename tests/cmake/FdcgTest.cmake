@@ -63,7 +63,7 @@ function(fdcg_script_test name)
     set(arg_TIMEOUT 300)
   endif()
   add_test(NAME "${name}" COMMAND ${arg_COMMAND} COMMAND_EXPAND_LISTS)
-  set_tests_properties("${name}" PROPERTIES TIMEOUT ${arg_TIMEOUT} LABELS ${arg_TIER} SKIP_REGULAR_EXPRESSION "skipped="
+  set_tests_properties("${name}" PROPERTIES TIMEOUT ${arg_TIMEOUT} LABELS ${arg_TIER} SKIP_REGULAR_EXPRESSION "OK \\(skipped="
                        RUN_SERIAL ${arg_RUN_ALONE} ENVIRONMENT "${arg_ENVIRONMENT}" ${arg_PROPERTIES})
   if(arg_NEEDS)
     fdcg_in_tier(${arg_TIER} ${arg_NEEDS})
