@@ -82,8 +82,8 @@ class NearestNodes {
   void store(Real radius, ClearBall* ball, NearNodes* near) const {
     uint16_t count = 0;
     *near = {};
-    for (uint32_t i = 0; i < count_; ++i) {
-      if (distance_[i] < radius) near->node[count++] = node_[i];
+    for (uint32_t i = 0; i < kMostNear; ++i) {  // not count_: with AVX-512 GCC 12 warns of what its masked loads never read
+      if (i < count_ && distance_[i] < radius) near->node[count++] = node_[i];
     }
     ball->near_count = count;
     ball->lists_all = stands_for_several_ ? 0 : 1;
