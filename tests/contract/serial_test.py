@@ -53,7 +53,8 @@ class Lines(SerialCase):
                 done = self.run_scene(scene, "--arm", "--for", "2.5", "--log", log, "--status", "json")
                 hand = lines_of(done.stdout)[-1]["devices"][0]
                 self.assertGreater(hand["ticks"], 1000)  # of 2500, on a machine that may be busy
-                self.assertLess(sum(hand["rejected"].values()), 20)  # what was under way as it was opened
+                damaged = {why: count for why, count in hand["rejected"].items() if why != "stale"}  # stale: the device was kept waiting
+                self.assertLess(sum(damaged.values()), 20, damaged)  # what was under way as it was opened
                 self.assertGreater(hand["round_trip_us"]["count"], 800)
                 self.assertEqual((0, 0), self.asked(device)[:2])
                 self.assertGreater(self.asked(device)[2], 1000)
