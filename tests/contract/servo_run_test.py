@@ -100,9 +100,10 @@ class Run(ServoCase):
         process = self.started(self.scene(), "--no-log", "--status", "json", "--status-every", "0.05")
 
         def wait_for(wanted, command):
-            process.stdin.write(command)
-            process.stdin.flush()
-            for _ in range(200):
+            for line in range(200):
+                if line % 20 == 0:  # again each second: where a tick was late, a device refuses to be armed
+                    process.stdin.write(command)
+                    process.stdin.flush()
                 device = json.loads(process.stdout.readline())["devices"][0]
                 if wanted(device):
                     return
