@@ -131,11 +131,16 @@ uint64_t block_sum(const unsigned char* data, uint64_t bytes) {
       }
     }
   }
-  for (int block = 0; block < 2; ++block) {
-    uint64_t lanes[kLaneCount];
-    memcpy(lanes, four[block], sizeof lanes);
-    sums[block] = folded(lanes, kChecksumBlock);
+  // Folded together: each is one chain of products.
+  uint64_t lanes[2][kLaneCount];
+  memcpy(lanes, four, sizeof lanes);
+  uint64_t first = kSeed ^ kChecksumBlock, second = first;
+  for (int i = 0; i < kLaneCount; ++i) {
+    first = absorbed(first, lanes[0][i]);
+    second = absorbed(second, lanes[1][i]);
   }
+  sums[0] = first;
+  sums[1] = second;
 }
 
 #endif
