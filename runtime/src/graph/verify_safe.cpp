@@ -12,6 +12,7 @@
 #include "base/config.hpp"
 #include "graph/box_tree.hpp"
 #include "graph/checksum.hpp"
+#include "graph/connection_words.hpp"
 #include "graph/implicit_tree.hpp"
 #include "graph/rigid_geometry.hpp"
 #include "graph/sections.hpp"
@@ -35,23 +36,6 @@ template <class Real>
 // that is not used inside out.
 constexpr float kFarthestBox = 8;
 constexpr uint8_t kLeastCellExponent = 127 - 24, kLargestCellExponent = 127;
-
-// A connection's record as one word: node 0, side of node 0, side of node 1, type, flatness.
-constexpr int kSide1At = 40, kTypeAt = 48, kFlatnessAt = 56;
-constexpr uint64_t kByte = 0xFF;
-
-uint64_t word_of(const fdcg_connection& connection) {
-  static_assert(sizeof(fdcg_connection) == 8 && __BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__);
-  uint64_t word;
-  memcpy(&word, &connection, sizeof word);
-  return word;
-}
-
-// A record of the next chunk, which memory sends while this one's are judged. Inlined by force: GCC drops calls of a function
-// that does nothing else.
-[[gnu::always_inline]] inline void prefetch(const void* record) {
-  __builtin_prefetch(record, 0, 2);
-}
 
 // Its passes are functions of their own: inlined into one, they would take longer for want of registers.
 template <class Real>
@@ -91,7 +75,9 @@ class SafeChunk {
     const auto* const file = reinterpret_cast<const unsigned char*>(&header_);
     for (uint32_t i = 0; i < header_.section_count; ++i) {
       const uint64_t bytes = section_bytes(header_, i), blocks = checksum_blocks(bytes);
-      part_->sums[i] += checksum_of_blocks(file + sections[i].offset, bytes, chunk_.first_of(blocks), chunk_.end_of(blocks));
+      const uint64_t pairs = blocks / 2 + blocks % 2;  // two blocks at once are summed in less time than one and one
+      const uint64_t first = 2 * chunk_.first_of(pairs), end = 2 * chunk_.end_of(pairs);
+      part_->sums[i] += checksum_of_blocks(file + sections[i].offset, bytes, first, end < blocks ? end : blocks);
     }
   }
 
@@ -126,6 +112,7 @@ class SafeChunk {
     const uint64_t begin = at, stop = kSides != 0 ? end * node_bytes<Real>(kSides, kHasPlanes) : offset_of(end);
     const uint64_t ahead = stop > begin ? stop - begin : 0;  // to the next chunk; of damaged offsets anything
     uint32_t sides = 0, seconds = 0;
+    const Limits limits = this->limits();
     UnitCheck<Real> check(-largest_offset_, largest_offset_);
     if (first_node == 0 && begin != 0) return false;
     for (uint64_t n = first_node; n < end; ++n) {
@@ -140,7 +127,7 @@ class SafeChunk {
       const auto* const side_records = reinterpret_cast<const fdcg_side*>(block + offsetof(Node, sides));
 #pragma GCC unroll 3
       for (uint32_t k = 0; k < count; ++k) {
-        if (fault_of_side<kSides != 0>(static_cast<uint32_t>(n), k, side_records[k]) != nullptr) return false;
+        if (fault_of_side<kSides != 0>(static_cast<uint32_t>(n), k, side_records[k], limits) != nullptr) return false;
         seconds += side_records[k].link & 1;
       }
       sides += count;
@@ -214,7 +201,7 @@ class SafeChunk {
     const Real* const planes = reinterpret_cast<const Real*>(block + planes_at<Real>(node.side_count));
     const auto* const sides = reinterpret_cast<const fdcg_side*>(block + offsetof(Node, sides));
     for (uint32_t k = 0; k < node.side_count; ++k) {
-      if (const char* const what = fault_of_side<false>(n, k, sides[k]); what != nullptr) return what;
+      if (const char* const what = fault_of_side<false>(n, k, sides[k], limits()); what != nullptr) return what;
       const bool has_plane = records_.has_planes()
                                  ? is_plane(planes + 4 * k)
                                  : has_derived_plane(node, sides[k], sides[k + 1 < node.side_count ? k + 1 : 0]);
@@ -223,17 +210,28 @@ class SafeChunk {
     return nullptr;
   }
 
+  // What sides are judged by, in one place: a compiler would read it from the header again and again.
+  struct Limits {
+    const fdcg_connection* connections;
+    uint32_t connection_count, corner_count, node_count;
+  };
+
+  [[nodiscard]] Limits limits() const {
+    return {records_.connections(), header_.connection_count, header_.corner_count, header_.node_count};
+  }
+
   // kIsUniform: all nodes have as many sides, and connections() sees to those across.
   template <bool kIsUniform>
-  [[nodiscard]] const char* fault_of_side(uint32_t n, uint32_t k, const fdcg_side& side) const {
-    const uint32_t link = side.link >> 1, which = side.link & 1;
-    if (link >= header_.connection_count) return "connection out of range";
-    if (side.corner >= header_.corner_count) return "corner out of range";
-    const uint32_t nodes = header_.node_count, across = side.across;
+  [[nodiscard]] const char* fault_of_side(uint32_t n, uint32_t k, const fdcg_side& side, const Limits& limits) const {
+    const uint64_t link = side.link >> 1, which = side.link & 1;
+    if (link >= limits.connection_count) return "connection out of range";
+    if (side.corner >= limits.corner_count) return "corner out of range";
+    const uint32_t nodes = limits.node_count, across = side.across;
     const bool is_nowhere = across >= nodes && across != FDCG_NONE;
-    const fdcg_connection& connection = records_.connections()[link];
-    const uint32_t first[2] = {n, across};  // the connection's, by which of its sides this one is
-    if (connection.node != first[which] || connection.side[which] != k)
+    const fdcg_connection& connection = limits.connections[link];
+    // The connection's, by which of its sides this one is: not to be predicted, so without a branch.
+    const uint32_t first = __builtin_expect_with_probability(which != 0, 1, 0.5) ? across : n;
+    if (connection.node != first || connection.side[which] != k)
       return is_nowhere ? "neighbour out of range" : "its connection does not own it";
     const bool is_boundary = __builtin_expect(connection.type == FDCG_BOUNDARY, false);
     if (is_boundary ? across != FDCG_NONE : across >= nodes)
@@ -252,34 +250,24 @@ class SafeChunk {
   }
 
   [[gnu::noinline]] fdcg_status connections() {
-    constexpr uint64_t kPerCount = 16, kMostAtOnce = (1 << kPerCount) - 1;
-    const uint64_t end = chunk_.end_of(header_.connection_count), most_sides = uniform_sides_ == 3 ? 3 : kByte + 1;
+    const uint64_t first = chunk_.first_of(header_.connection_count), end = chunk_.end_of(header_.connection_count);
+    const uint64_t most_sides = uniform_sides_ == 3 ? 3 : kByte + 1;
     // Of a byte that is at most 2 or 3: higher bits; and both of the lower two.
     constexpr uint64_t kHigher = 0xFC, kBoth = 1;
     static_assert(FDCG_BOUNDARY == 3 && FDCG_FLAT_ANGLE == 2);
     const uint64_t side1 = uniform_sides_ == 3 ? 1 : 0;
     const uint64_t higher = kHigher << kTypeAt | kHigher << kFlatnessAt | side1 * (kHigher << kSide1At);
     const uint64_t both = kBoth << kFlatnessAt | side1 * (kBoth << kSide1At);
-    for (uint64_t c = chunk_.first_of(header_.connection_count); c < end;) {
-      uint64_t types = 0, any = 0, pairs = 0;  // types: four counts of 16 bits
-      const uint64_t first = c;
-      c = end - first < kMostAtOnce ? end : first + kMostAtOnce;
-      for (uint64_t i = first; i < c; ++i) {
-        const uint64_t word = word_of(records_.connections()[i]);
-        any |= word;
-        pairs |= word & word >> 1;
-        types += uint64_t{1} << (word >> kTypeAt & FDCG_BOUNDARY) * kPerCount;
-      }
-      if (((any & higher) | (pairs & both)) != 0) {
-        return for_all(first, c, "connection", error_, [&](uint32_t i, auto* faults) {
-          const fdcg_connection& connection = records_.connections()[i];
-          faults->note((connection.type > FDCG_BOUNDARY) | (connection.flatness > FDCG_FLAT_ANGLE), "unknown type or flatness");
-          faults->note(connection.side[1] >= most_sides, "its second node has no such side");
-        });
-      }
-      for (uint64_t type = 0; type < 4; ++type)
-        part_->types[type] += types >> type * kPerCount & kMostAtOnce;
+    const ConnectionWords words = look_at_words(records_.connections() + first, end - first);
+    if (((words.any & higher) | (words.pairs & both)) != 0) {
+      return for_all(first, end, "connection", error_, [&](uint32_t c, auto* faults) {
+        const fdcg_connection& connection = records_.connections()[c];
+        faults->note((connection.type > FDCG_BOUNDARY) | (connection.flatness > FDCG_FLAT_ANGLE), "unknown type or flatness");
+        faults->note(connection.side[1] >= most_sides, "its second node has no such side");
+      });
     }
+    for (uint32_t type = 0; type < 4; ++type)
+      part_->types[type] += words.types[type];
     return FDCG_OK;
   }
 
@@ -322,8 +310,9 @@ class SafeChunk {
       const bool is_node = corner.first < header_.node_count;
       return is_node && corner.side < side_count_of(corner.first) ? nullptr : "fan does not start here";
     };
-    const uint64_t end = chunk_.end_of(header_.corner_count);
-    for (uint64_t v = chunk_.first_of(header_.corner_count); v < end; ++v) {
+    const uint64_t first = chunk_.first_of(header_.corner_count), end = chunk_.end_of(header_.corner_count);
+    for (uint64_t v = first; v < end; ++v) {
+      prefetch(records_.corners() + v + (end - first));
       if (const char* const what = fault_of(static_cast<uint32_t>(v)); what != nullptr)
         return refuse_record(error_, "corner", v, what);
     }
@@ -371,7 +360,21 @@ class SafeChunk {
   }
 
   [[gnu::noinline]] fdcg_status source_map() {
-    return for_mine(header_.source_face_count, "source face", [&](uint32_t f, auto* faults) {
+    const uint64_t first = chunk_.first_of(header_.source_face_count), end = chunk_.end_of(header_.source_face_count);
+    uint64_t judged = first;
+#if FDCG_HAS_VECTORS
+    using Numbers = uint32_t __attribute__((vector_size(16)));
+    constexpr uint64_t kNumbers = sizeof(Numbers) / sizeof(uint32_t);
+    const Numbers most = Numbers{} + header_.node_count;
+    Numbers wrong = {};
+    for (; judged + kNumbers <= end; judged += kNumbers) {
+      Numbers numbers;
+      memcpy(&numbers, raw_.source_map + judged, sizeof numbers);
+      wrong |= reinterpret_cast<Numbers>(numbers + 1 > most);
+    }
+    if (any_of(reinterpret_cast<Words>(wrong)) != 0) judged = first;
+#endif
+    return for_all(judged, end, "source face", error_, [&](uint32_t f, auto* faults) {
       faults->note(raw_.source_map[f] + 1 > header_.node_count, "node out of range");  // FDCG_NONE + 1 is 0
     });
   }
