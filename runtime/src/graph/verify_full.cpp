@@ -7,6 +7,8 @@
 #include "base/message.hpp"
 #include "graph/box_tree.hpp"
 #include "graph/graph_view.hpp"
+#include "graph/point_bounds.hpp"
+#include "graph/triangle_fan.hpp"
 #include "graph/verify.hpp"
 
 namespace fdcg {
@@ -26,12 +28,13 @@ class FullChunk {
   fdcg_status run() {
     fdcg_status status = raw_.hierarchy != nullptr ? hierarchy() : FDCG_OK;
     if (status == FDCG_OK && !(are_triangles_ && are_sound_triangles())) status = nodes();
-    return status == FDCG_OK ? corners() : status;
+    return status == FDCG_OK && !(kWalksByTwo && are_triangles_ && are_sound_fans()) ? corners() : status;
   }
 
  private:
   using Node = NodeRef<RigidGeometry<Real>>;
-  static constexpr uint32_t kSides = 3;  // of a triangle
+  static constexpr uint32_t kSides = 3;                  // of a triangle
+  static constexpr bool kWalksByTwo = FDCG_HAS_VECTORS;  // small processors wait little, and have little room
 
   template <class Look>
   fdcg_status for_mine(uint64_t things, const char* noun, Look look) {
@@ -86,7 +89,7 @@ class FullChunk {
     for (uint64_t n = chunk_.first_of(header_.node_count); n < end;) {
       const auto leaf = static_cast<uint32_t>(n / FDCG_LEAF_NODES);
       const uint64_t leaf_end = (uint64_t{leaf} + 1) * FDCG_LEAF_NODES, last = leaf_end < end ? leaf_end : end;
-      Vec3<Real> low = graph_.corner_point(sides_of(n)[0].corner), high = low;
+      PointBounds<Real> bounds(point_of(sides_of(n)[0].corner));
       for (; n < last; ++n) {
         const fdcg_side* const sides = sides_of(n);
         const unsigned char* const next = reinterpret_cast<const unsigned char*>(sides) + ahead;
@@ -96,21 +99,28 @@ class FullChunk {
 #pragma GCC unroll 3
         for (uint32_t k = 0; k < kSides; ++k) {
           const fdcg_side& side = sides[k];
-          const Vec3<Real> p = graph_.corner_point(side.corner);
-          low = {low.x < p.x ? low.x : p.x, low.y < p.y ? low.y : p.y, low.z < p.z ? low.z : p.z};
-          high = {high.x > p.x ? high.x : p.x, high.y > p.y ? high.y : p.y, high.z > p.z ? high.z : p.z};
+          bounds.add(point_of(side.corner));
           if (side.corner == sides[k + 1 < kSides ? k + 1 : 0].corner || side.across < least_across[side.link & 1])
             return false;
           if (side.across == FDCG_NONE && graph_.connections()[side.link >> 1].side[1] != 0) return false;
         }
       }
-      const LeafBox box = box_of(leaf);
-      const Vec3<double> l = widen(low) * per_unit_, h = widen(high) * per_unit_;
-      if (!(box.low[0] <= l.x && h.x <= box.high[0] && box.low[1] <= l.y && h.y <= box.high[1] && box.low[2] <= l.z &&
-            h.z <= box.high[2]))
-        return false;
+      if (raw_.hierarchy != nullptr && !holds(leaf, bounds)) return false;
     }
     return true;
+  }
+  [[nodiscard]] const Real* point_of(uint32_t corner) const {
+    return graph_.corners()[corner].point;
+  }
+  [[nodiscard]] bool holds(uint32_t leaf, const PointBounds<Real>& bounds) const {
+    const fdcg_box8& boxes = raw_.hierarchy[first_leaf_record_ + leaf / FDCG_TREE_WAYS];
+    bool is_inside = true;
+#pragma GCC unroll 3
+    for (int axis = 0; axis < 3; ++axis) {
+      is_inside &= low_of(boxes, axis, leaf % FDCG_TREE_WAYS) <= double{bounds.low(axis)} * per_unit_;
+      is_inside &= double{bounds.high(axis)} * per_unit_ <= high_of(boxes, axis, leaf % FDCG_TREE_WAYS);
+    }
+    return is_inside;
   }
   // Of triangles of one size.
   [[nodiscard]] const fdcg_side* sides_of(uint64_t n) const {
@@ -126,12 +136,7 @@ class FullChunk {
   };
   static constexpr uint32_t kWalks = 8;  // at once, so that their cache misses overlap
 
-  [[nodiscard]] fdcg_status corners() {
-    return are_triangles_ ? corners_of<true>() : corners_of<false>();
-  }
-
-  template <bool kAreTriangles>
-  [[gnu::noinline]] fdcg_status corners_of() {
+  [[gnu::noinline]] fdcg_status corners() {
     const uint64_t end = chunk_.end_of(header_.corner_count);
     for (uint64_t v = chunk_.first_of(header_.corner_count); v < end;) {
       FanWalk walks[kWalks];
@@ -141,7 +146,7 @@ class FullChunk {
         const char* const what = graph_.corner(corner).is_busy() ? busy_fan(corner) : start_walk(corner, &walks[count++]);
         if (what != nullptr) return refuse_record(error_, "corner", v, what);
       }
-      walk_all<kAreTriangles>(walks, count);
+      walk_all(walks, count);
       for (uint32_t i = 0; i < count; ++i) {
         const FanWalk& walk = walks[i];
         const auto corner = graph_.corner(walk.corner);
@@ -166,9 +171,7 @@ class FullChunk {
   }
 
   // From side to side: back to the start, or to the border.
-  template <bool kAreTriangles>
   void walk_all(FanWalk* walks, uint32_t count) const {
-    static constexpr uint8_t kPrevious[kSides] = {2, 0, 1};
     uint32_t walking = count;
     for (uint32_t step = 1; walking > 0 && step <= FDCG_BUSY_FAN; ++step) {
       for (uint32_t i = 0; i < count; ++i) {
@@ -178,14 +181,13 @@ class FullChunk {
         walk.is_open = incoming.across == FDCG_NONE;
         if (!walk.is_open) {
           const uint32_t link = incoming.link ^ 1;
-          const fdcg_side* const sides = kAreTriangles ? sides_of(incoming.across) : &graph_.node(incoming.across).side(0);
-          const uint32_t k = kAreTriangles ? uint32_t{sides[1].link == link} + 2 * uint32_t{sides[2].link == link}
-                                           : graph_.connections()[link >> 1].side[link & 1];
-          const fdcg_side& twin = sides[k];
+          const Node node = graph_.node(incoming.across);
+          const uint32_t k = graph_.connections()[link >> 1].side[link & 1];
+          const fdcg_side& twin = node.side(k);
           walk.is_wrong = twin.link != link || twin.across != walk.node || twin.corner != walk.corner;
           if (!walk.is_wrong && &twin != walk.first) {
             walk.node = incoming.across;
-            walk.incoming = &sides[kAreTriangles ? kPrevious[k] : graph_.node(incoming.across).previous(k)];
+            walk.incoming = &node.side(node.previous(k));
             continue;
           }
         }
@@ -194,6 +196,40 @@ class FullChunk {
         --walking;
       }
     }
+  }
+
+  // The same of triangles of one size. False: something is wrong, and corners() is to say what.
+  [[gnu::noinline]] bool are_sound_fans() {
+    const uint64_t end = chunk_.end_of(header_.corner_count);
+    const TriangleSides triangles{graph_.nodes() + offsetof(typename Records<Real>::Node, sides), graph_.block_bytes()};
+    TriangleFan fans[kFans];
+    uint64_t faces = 0;
+    uint32_t count = 0;
+    for (uint64_t i = chunk_.first_of(header_.corner_count); i < end; ++i) {
+      const auto v = static_cast<uint32_t>(i);
+      if (__builtin_expect(graph_.corner(v).is_busy(), false)) {
+        if (busy_fan(v) != nullptr) return false;
+        continue;
+      }
+      if (!start_fan(v, triangles, &fans[count])) return false;
+      faces += fans[count].between + 1;
+      if (++count < kFans) continue;
+      if (!are_sound_together(fans, triangles)) return false;
+      count = 0;
+    }
+    for (uint32_t i = 0; i < count; ++i) {
+      if (!is_sound_fan(fans[i], 0, triangles)) return false;
+    }
+    part_->faces += faces;
+    return true;
+  }
+
+  bool start_fan(uint32_t v, TriangleSides triangles, TriangleFan* fan) const {
+    const auto corner = graph_.corner(v);
+    const uint32_t k = corner.first_side(), n = corner.first_node();
+    const fdcg_side* const first = triangles.of(n) + k;
+    *fan = {first, first + (k == 0 ? 2 : -1), v, n, corner.walked_count() - (corner.is_open() ? 2u : 1u), corner.is_open()};
+    return first->corner == v && corner.is_open() == (first->across == FDCG_NONE);
   }
 
   // Each entry starts at this corner; the node to its left comes in along the next entry, and the two are twins there.
@@ -221,11 +257,14 @@ class FullChunk {
   }
 
   // One coordinate of a box, in tree units; no rounding: a float of at most 24 bits and eight bits of cells.
+  static double coordinate(const fdcg_box8& boxes, int axis, uint32_t cells) {
+    return double{boxes.origin[axis]} + double{tree_cell(boxes.exponent[axis])} * cells;
+  }
   static double low_of(const fdcg_box8& boxes, int axis, uint32_t j) {
-    return double{boxes.origin[axis]} + double{tree_cell(boxes.exponent[axis])} * boxes.low[axis][j];
+    return coordinate(boxes, axis, boxes.low[axis][j]);
   }
   static double high_of(const fdcg_box8& boxes, int axis, uint32_t j) {
-    return double{boxes.origin[axis]} + double{tree_cell(boxes.exponent[axis])} * boxes.high[axis][j];
+    return coordinate(boxes, axis, boxes.high[axis][j]);
   }
 
   // Every box holds those of the record below.
@@ -244,10 +283,14 @@ class FullChunk {
   }
   static bool holds_boxes(const fdcg_box8& above, uint32_t j, const fdcg_box8& below, uint32_t lanes) {
     for (int axis = 0; axis < 3; ++axis) {
-      const double low = low_of(above, axis, j), high = high_of(above, axis, j);
+      uint32_t least = UINT8_MAX, most = 0;  // of those below: a cell's length is not negative
       for (uint32_t i = 0; lanes >> i != 0; ++i) {
-        if (!(low <= low_of(below, axis, i) && high_of(below, axis, i) <= high)) return false;
+        const uint32_t low = below.low[axis][i], high = below.high[axis][i];
+        least = low < least ? low : least;
+        most = high > most ? high : most;
       }
+      if (!(low_of(above, axis, j) <= coordinate(below, axis, least))) return false;
+      if (!(coordinate(below, axis, most) <= high_of(above, axis, j))) return false;
     }
     return true;
   }
