@@ -14,7 +14,7 @@ struct Plane {
   Vec3<Real> normal;
   Real offset;
 
-  [[nodiscard]] Real distance(Vec3<Real> x) const { return dot(normal, x) + offset; }
+  [[nodiscard]] FDCG_HOT Real distance(const Vec3<Real>& x) const { return dot(normal, x) + offset; }
 };
 
 // A connection's line: start + u direction, 0 <= u <= length, from corner 0 to corner 1.

@@ -23,6 +23,18 @@
 
 namespace fdcg {
 
+// How numbers are given that stand in a file and do not change: as a copy, in registers; where the library is built for size,
+// as they stand there.
+#ifdef __OPTIMIZE_SIZE__
+inline constexpr bool kGivesInPlace = true;
+template <class Numbers>
+using Given = const Numbers&;
+#else
+inline constexpr bool kGivesInPlace = false;
+template <class Numbers>
+using Given = Numbers;
+#endif
+
 template <class Real>
 struct Vec3 {
   Real x, y, z;
@@ -37,6 +49,14 @@ inline Vec3<Real> by_parts(Vec3<Real> a) {
 template <class Real>
 inline Vec3<Real> vec(const Real (&a)[3]) {
   return {a[0], a[1], a[2]};
+}
+template <class Real>
+inline Given<Vec3<Real>> given_vec(const Real (&a)[3]) {
+  if constexpr (kGivesInPlace) {
+    return *reinterpret_cast<const Vec3<Real>*>(a);
+  } else {
+    return vec(a);
+  }
 }
 template <class Real, class Stored>
 inline void store(Vec3<Real> from, Stored (&to)[3]) {

@@ -30,7 +30,7 @@ def qemu(processor, *options):
 # Of the library's objects, all that a program with one sphere may link, and all that one may link that steps one graph.
 ONE_SPHERE = {"admit", "surface", "surface_sphere", "surface_step", "params", "params_init", "friction_terms", "message", "version"}
 ONE_EFFECT = {"effect_step", "message", "vibration", "version"}  # and one with one effect
-ONE_GRAPH = {"admit", "arithmetic", "box_tree", "exact_orient", "friction_terms", "hooks", "load", "map_file_none", "map_file_posix",
+ONE_GRAPH = {"admit", "arithmetic", "box_distances", "box_tree", "exact_orient", "friction_terms", "hooks", "load", "map_file_none", "map_file_posix",
              "material_section", "message", "node_normals", "params", "params_init", "records", "servo_step", "shaded_face", "small_checksum", "version"}
 OTHER_PARTS = r"scene|soft_finger|deform|body|pile|_of_plane|step_plane|[Cc]ylinder|[Cc]apsule|[Cc]one[^a-z]|[Tt]orus|[Ee]llipsoid"
 

@@ -110,9 +110,9 @@ class Parts(WeightCase):
                   ("one_graph", "f64-shaded", F64, 64 * KB, 91_900), ("one_graph", "both-shaded", NO_WORDS, 96 * KB, 161_300))
     M7_GRAPHS = (("one_graph", "f32", (*F32, "-DFDCG_WITH_FRICTION_TERMS=OFF"), 22 * KB, 39_800),
                  ("one_graph", "f32-plain", (*F32, *PLAIN), 22 * KB, 29_000),
-                 ("one_graph", "f32-least", (*F32, *LEAST), 22 * KB, 27_100),
+                 ("one_graph", "f32-least", (*F32, *LEAST), 22 * KB, 25_100),
                  ("one_scene", "f32-plain", (*F32, *PLAIN), 32 * KB, 39_300),
-                 ("one_scene", "f32-least", (*F32, *LEAST), 32 * KB, 37_200))
+                 ("one_scene", "f32-least", (*F32, *LEAST), 32 * KB, 34_900))
 
     def embedded(self, precision="f32"):
         """The folder with the embedded graph, its array and its header."""

@@ -99,8 +99,8 @@ fdcg_status refuse(fdcg_error* error, const char* field, double value, double lo
 
 #else
 
-Message::Message(fdcg_error* error, fdcg_status status, uint64_t offset) : status_(status) {
-  if (error == nullptr) return;
+fdcg_status refuse_silently_at(uint64_t offset, fdcg_error* error, fdcg_status status) {
+  if (error == nullptr) return status;
   error->status = status;
   error->offset = offset;
   const char* words = FDCG_WITH_STATUS_TEXTS ? fdcg_status_text(status) : "";
@@ -108,10 +108,11 @@ Message::Message(fdcg_error* error, fdcg_status status, uint64_t offset) : statu
   for (; words[length] != '\0' && length + 1 < sizeof error->message; ++length)
     error->message[length] = words[length];
   error->message[length] = '\0';
+  return status;
 }
 
 fdcg_status refuse_silently(fdcg_error* error, fdcg_status status) {
-  return Message(error, status);
+  return refuse_silently_at(0, error, status);
 }
 
 #endif

@@ -54,9 +54,14 @@ class Message {
 
 #else
 
+// One call of few arguments, without the words that its callers would have to bring. Returns the status.
+[[gnu::cold]] fdcg_status refuse_silently(fdcg_error* error, fdcg_status status);
+[[gnu::cold]] fdcg_status refuse_silently_at(uint64_t offset, fdcg_error* error, fdcg_status status);
+
 class Message {
  public:
-  [[gnu::cold]] Message(fdcg_error* error, fdcg_status status, uint64_t offset = 0);
+  Message(fdcg_error* error, fdcg_status status) : status_(refuse_silently(error, status)) {}
+  Message(fdcg_error* error, fdcg_status status, uint64_t offset) : status_(refuse_silently_at(offset, error, status)) {}
   Message& text(const char*) { return *this; }
   Message& quoted(const char*, int) { return *this; }
   Message& number(uint64_t) { return *this; }
@@ -70,9 +75,6 @@ class Message {
  private:
   fdcg_status status_;
 };
-
-// One call, without the words that its callers would have to bring.
-[[gnu::cold]] fdcg_status refuse_silently(fdcg_error* error, fdcg_status status);
 
 inline fdcg_status refuse(fdcg_error* error, fdcg_status status, const char*) {
   return refuse_silently(error, status);

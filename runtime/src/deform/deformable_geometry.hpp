@@ -16,6 +16,9 @@ struct DeformableGeometry : GraphRecords<RealType> {
   using NodeKey = uint32_t;  // its index
 
   static constexpr bool kKeepsDirections = false;
+  static constexpr bool kHasPlanes = false;
+  static constexpr bool kGivesPlanesInPlace = false;  // they change
+  using StoredPlane = Plane<Real>;
 
   Upkeep<Real> upkeep;
 

@@ -149,6 +149,9 @@ struct Parts {
   r.trim();
 }
 
+// Four points, where they are.
+using FourPoints = const Vec3<double>* const (&)[4];
+
 // Four points in multiples of 2^unit.
 struct Multiples {
   Parts part[4][3];
@@ -156,12 +159,12 @@ struct Multiples {
   int bits;  // of the largest
 };
 
-[[gnu::noinline, gnu::cold]] Multiples multiples_of(const Vec3<double> (&point)[4]) {
+[[gnu::noinline, gnu::cold]] Multiples multiples_of(FourPoints point) {
   Multiples m;
   m.unit = 4096;  // larger than any exponent
   int top = -4096;
   for (int p = 0; p < 4; ++p) {
-    const double x[3] = {point[p].x, point[p].y, point[p].z};
+    const double x[3] = {point[p]->x, point[p]->y, point[p]->z};
     for (int k = 0; k < 3; ++k) {
       const Parts part = m.part[p][k] = parts_of(x[k]);
       if (part.mantissa == 0) continue;
@@ -235,10 +238,10 @@ constexpr int kWordBits = 60;
 }
 
 // The determinant, with an error of at most 2^-98 of the size of its products.
-[[gnu::noinline, gnu::cold]] double determinant_in_pairs(const Vec3<double> (&point)[4]) {
+[[gnu::noinline, gnu::cold]] double determinant_in_pairs(FourPoints point) {
   Split edge[3][3];
   for (int p = 0; p < 3; ++p) {
-    const Vec3<double>&to = point[p + 1], &from = point[0];
+    const Vec3<double>&to = *point[p + 1], &from = *point[0];
     edge[p][0] = exact_sum(to.x, -from.x);
     edge[p][1] = exact_sum(to.y, -from.y);
     edge[p][2] = exact_sum(to.z, -from.z);
@@ -258,18 +261,18 @@ inline bool are_same(double a, double b, double c, double d) {
 
 // Trivially coplanar points: a segment that begins in a corner touches all its edges there, and meshes have axis-aligned
 // planes.
-inline bool is_plainly_flat(const Vec3<double> (&point)[4]) {
-  const auto &a = point[0], &b = point[1], &c = point[2], &d = point[3];
+inline bool is_plainly_flat(FourPoints point) {
+  const auto &a = *point[0], &b = *point[1], &c = *point[2], &d = *point[3];
   for (int i = 1; i < 4; ++i) {
     for (int j = 0; j < i; ++j) {
-      if (point[i].x == point[j].x && point[i].y == point[j].y && point[i].z == point[j].z) return true;
+      if (point[i]->x == point[j]->x && point[i]->y == point[j]->y && point[i]->z == point[j]->z) return true;
     }
   }
   return are_same(a.x, b.x, c.x, d.x) || are_same(a.y, b.y, c.y, d.y) || are_same(a.z, b.z, c.z, d.z);
 }
 
 // `bound`: of the filter, 4 epsilons of the products' size.
-[[gnu::noinline, gnu::cold]] int exact_sign(const Vec3<double> (&point)[4], double bound, uint32_t* work_left) {
+[[gnu::noinline, gnu::cold]] int exact_sign(FourPoints point, double bound, uint32_t* work_left) {
   if (is_plainly_flat(point)) return 0;
   if (work_left != nullptr) spend(work_left, kPairsWork);
   constexpr double kOfFilter = 0x1p-48;  // 2^-98 of the size
@@ -299,7 +302,7 @@ int orient3d_sign(const Vec3<double>& a, const Vec3<double>& b, const Vec3<doubl
   if (det > bound) return 1;
   if (det < -bound) return -1;
   if (FDCG_MUTANT("watertight")) return det > 0 ? 1 : (det < 0 ? -1 : 0);
-  return exact_sign({a, b, c, d}, bound, work_left);
+  return exact_sign({&a, &b, &c, &d}, bound, work_left);
 }
 
 }  // namespace fdcg

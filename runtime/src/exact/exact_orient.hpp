@@ -18,4 +18,10 @@ inline Vec3<double> widen(Vec3<Real> a) {
   return {static_cast<double>(a.x), static_cast<double>(a.y), static_cast<double>(a.z)};
 }
 
+// The same of floats.
+FDCG_ONE_COPY int orient3d_sign(const Vec3<float>& a, const Vec3<float>& b, const Vec3<float>& c, const Vec3<float>& d,
+                                uint32_t* work_left) {
+  return orient3d_sign(widen(a), widen(b), widen(c), widen(d), work_left);
+}
+
 }  // namespace fdcg

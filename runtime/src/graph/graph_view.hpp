@@ -27,6 +27,7 @@ class NodeRef {
   using Real = typename Geometry::Real;
   using Key = typename Geometry::NodeKey;
   using Record = typename Records<Real>::Node;
+  using StoredPlane = typename Geometry::StoredPlane;
 
  public:
   NodeRef(const GraphView<Geometry>& graph, const unsigned char* block, uint32_t index)
@@ -39,11 +40,7 @@ class NodeRef {
   [[nodiscard]] bool is_inexact() const { return FDCG_WITH_INEXACT_NODES && (up_to_date().flags & FDCG_NODE_INEXACT) != 0; }
   [[nodiscard]] uint16_t flags() const { return up_to_date().flags; }
   [[nodiscard]] Vec3<Real> normal() const { return vec(up_to_date().plane.normal); }
-  [[nodiscard]] Plane<Real> plane() const {
-    const Record& record = up_to_date();
-    if (FDCG_MUTANT("planes-shifted")) return {vec(record.plane.normal), record.plane.offset + fault_shift()};
-    return {vec(record.plane.normal), record.plane.offset};
-  }
+  [[nodiscard]] FDCG_HOT StoredPlane plane() const { return given(up_to_date().plane, FDCG_MUTANT("planes-shifted")); }
   // Of an exactly planar node: the first three span its plane.
   [[nodiscard]] uint32_t spanning_corner(uint32_t k) const { return graph_->spanning_corner(*this, k); }
 
@@ -77,17 +74,20 @@ class NodeRef {
   [[nodiscard]] uint32_t next(uint32_t k) const { return (k + 1) & (0u - uint32_t{k + 1 < side_count()}); }
 
   // voronoi_plane() where the graph has them.
-  [[nodiscard]] Plane<Real> stored_plane(uint32_t k) const {
-    const auto& stored = reinterpret_cast<const typename Records<Real>::Plane*>(block_ + planes_at<Real>(side_count()))[k];
-    if (FDCG_MUTANT("rims-shifted")) return {vec(stored.normal), stored.offset + fault_shift()};
-    return {vec(stored.normal), stored.offset};
+  [[nodiscard]] FDCG_HOT StoredPlane stored_plane(uint32_t k) const {
+    const auto* const planes = reinterpret_cast<const typename Records<Real>::Plane*>(block_ + planes_at<Real>(side_count()));
+    return given(planes[k], FDCG_MUTANT("rims-shifted"));
   }
   // Through side k's edge, normal pointing out of the face: m_0 = e x n_0, m_1 = n_1 x e (contact-model GRAPH-3).
-  [[nodiscard]] Plane<Real> voronoi_plane(uint32_t k) const {
-    if (__builtin_expect(graph_->has_planes(), true)) return stored_plane(k);
-    Plane<Real> derived;
-    derive_plane(k, &derived);
-    return derived;
+  [[nodiscard]] FDCG_HOT decltype(auto) voronoi_plane(uint32_t k) const {
+    if constexpr (Geometry::kHasPlanes) {
+      return stored_plane(k);
+    } else {
+      if (__builtin_expect(graph_->has_planes(), true)) return Plane<Real>(stored_plane(k));
+      Plane<Real> derived;
+      derive_plane(k, &derived);
+      return derived;
+    }
   }
 
   // The first side inside of whose Voronoi plane a point may not be by more than `bound`; those before it surely hold it, which
@@ -99,6 +99,14 @@ class NodeRef {
   [[nodiscard]] Key key() const { return key_; }
 
  private:
+  [[nodiscard]] FDCG_HOT StoredPlane given(const typename Records<Real>::Plane& plane, bool is_shifted) const {
+    if constexpr (Geometry::kGivesPlanesInPlace) {
+      static_assert(sizeof plane == sizeof(Plane<Real>) && offsetof(Plane<Real>, offset) == sizeof plane.normal);
+      return *reinterpret_cast<const Plane<Real>*>(&plane);
+    } else {
+      return {vec(plane.normal), is_shifted ? plane.offset + fault_shift() : plane.offset};
+    }
+  }
   // Out of line: every rule reads planes, and each would inline a copy. Not as a return value: four floats are returned two to
   // a register, through memory, which stalls.
   [[gnu::noinline]] void derive_plane(uint32_t k, Plane<Real>* plane) const {
@@ -163,7 +171,7 @@ class CornerRef {
  public:
   CornerRef(const GraphView<Geometry>& graph, uint32_t index) : graph_(&graph), record_(&graph.corners()[index]) {}
 
-  [[nodiscard]] Vec3<Real> point() const { return graph_->point_of(*record_); }
+  [[nodiscard]] decltype(auto) point() const { return graph_->point_of(*record_); }
   [[nodiscard]] bool is_open() const { return (record_->fan & FDCG_CORNER_OPEN) != 0; }
   [[nodiscard]] uint32_t fan_count() const { return is_busy() ? busy().fan_count : walked_count(); }
   // Of about unit length: good for the side on which a point is, not for its distance.
@@ -199,11 +207,7 @@ struct GraphView : Geometry {
   [[nodiscard]] double max_deviation() const { return FDCG_WITH_INEXACT_NODES ? this->header()->max_deviation : 0; }
   [[nodiscard]] bool has_inexact_nodes() const { return max_deviation() > 0; }
 
-  [[nodiscard]] NodeRef<Geometry> node(uint32_t index) const {
-    const size_t at =
-        this->node_offsets() == nullptr ? index * this->block_bytes() : this->node_offsets()[index] * sizeof(Real);
-    return {*this, this->nodes() + at, index};
-  }
+  [[nodiscard]] NodeRef<Geometry> node(uint32_t index) const { return {*this, block_of(index), index}; }
   [[nodiscard]] ConnectionRef<Geometry> connection(uint32_t index) const { return {*this, index}; }
   [[nodiscard]] CornerRef<Geometry> corner(uint32_t index) const { return {*this, index}; }
   // Side k of a node, from the connection's corner 0 to its corner 1, whichever way the node's loop runs.
@@ -269,19 +273,33 @@ struct GraphView : Geometry {
         visit(fan_entry(corner, i));
       return;
     }
-    const uint32_t count = corner.walked_count();
-    uint32_t n = corner.first_node(), k = corner.first_side();
-    for (uint32_t i = 0; i < count; ++i) {
-      const NodeRef<Geometry> here = node(n);
-      visit(FanEntry{here.connection(k), here.which(k), n, k});
-      const uint32_t incoming = here.previous(k);
-      n = here.across(incoming);
-      if (n == FDCG_NONE) {
-        visit(FanEntry{here.connection(incoming), 1 - here.which(incoming), FDCG_NONE, 0});
-        return;
-      }
-      k = this->connections()[here.connection(incoming)].side[1 - here.which(incoming)];
+    FanEntry entry;
+    read_fan_entry(corner.first_node(), corner.first_side(), &entry);
+    for (uint32_t left = corner.walked_count(); left > 0; --left) {
+      visit(entry);
+      read_next_in_fan(&entry);
+      if (entry.node == FDCG_NONE) return visit(entry);
     }
+  }
+  // The entry that leaves its corner by side k of a node, and the one after that.
+  void read_fan_entry(uint32_t n, uint32_t k, FanEntry* entry) const {
+    const NodeRef<Geometry> here = node(n);
+    *entry = {here.connection(k), here.which(k), n, k};
+  }
+  FDCG_ONE_COPY void read_next_in_fan(FanEntry* entry) const {
+    const NodeRef<Geometry> here = node(entry->node);
+    const uint32_t incoming = here.previous(entry->outgoing), beyond = here.across(incoming);
+    if (beyond == FDCG_NONE) {
+      *entry = {here.connection(incoming), 1 - here.which(incoming), FDCG_NONE, 0};
+    } else {
+      read_fan_entry(beyond, this->connections()[here.connection(incoming)].side[1 - here.which(incoming)], entry);
+    }
+  }
+  // Where a node's record begins.
+  [[nodiscard]] FDCG_HOT const unsigned char* block_of(uint32_t index) const {
+    const size_t at =
+        this->node_offsets() == nullptr ? index * this->block_bytes() : this->node_offsets()[index] * sizeof(Real);
+    return this->nodes() + at;
   }
   // Entry i of a busy corner.
   [[nodiscard]] FanEntry fan_entry(CornerRef<Geometry> corner, uint32_t i) const {
@@ -309,13 +327,12 @@ FDCG_ONE_COPY Real distance_beyond(NodeRef<Geometry> node, uint32_t k, const Vec
 template <class Geometry, class Real = typename Geometry::Real>
 [[gnu::noinline]] int exact_side_sign(const GraphView<Geometry>& graph, NodeRef<Geometry> node, const Vec3<Real>& x,
                                       uint32_t* work_left) {
-  Vec3<double> corner[3];
+  Vec3<Real> corner[3];
   for (uint32_t k = 0; k < 3; ++k) {
-    const Vec3<Real> v = graph.corner_point(node.spanning_corner(k));
+    const Vec3<Real> v = corner[k] = graph.corner_point(node.spanning_corner(k));
     if (v.x == x.x && v.y == x.y && v.z == x.z) return 0;  // at an apex of 10^4 faces worth 10^4 exact signs
-    corner[k] = widen(v);
   }
-  return orient3d_sign(corner[0], corner[1], corner[2], widen(x), work_left);
+  return orient3d_sign(corner[0], corner[1], corner[2], x, work_left);
 }
 
 // side(x) of contact-model SIDE-1: the distance of x from the face's plane, with its exact sign where the face is exactly

@@ -51,7 +51,11 @@ struct RigidGeometry : GraphRecords<RealType> {
   using Real = RealType;
   using Corner = typename GraphRecords<Real>::Corner;
 
-  static constexpr bool kKeepsDirections = true;  // those in a busy corner's tree hold: its faces do not move
+  static constexpr bool kKeepsDirections = true;                 // those in a busy corner's tree hold: its faces do not move
+  static constexpr bool kHasPlanes = !FDCG_WITH_DERIVED_PLANES;  // of all sides, in every graph (load.cpp)
+
+  static constexpr bool kGivesPlanesInPlace = kGivesInPlace;
+  using StoredPlane = Given<Plane<Real>>;
 
   // What a NodeRef holds of its node besides the address of its block.
   struct NodeKey {
@@ -60,16 +64,15 @@ struct RigidGeometry : GraphRecords<RealType> {
 
   using GraphRecords<Real>::GraphRecords;
 
-  // What the library was built without no graph has (load.cpp).
-  [[nodiscard]] bool has_planes() const { return !FDCG_WITH_DERIVED_PLANES || GraphRecords<Real>::has_planes(); }
-  [[nodiscard]] bool has_edges() const { return !FDCG_WITH_DERIVED_PLANES || GraphRecords<Real>::has_edges(); }
+  [[nodiscard]] bool has_planes() const { return kHasPlanes || GraphRecords<Real>::has_planes(); }
+  [[nodiscard]] bool has_edges() const { return kHasPlanes || GraphRecords<Real>::has_edges(); }
 
   // Before a node's plane and flags, or a corner's normal, are read from their records.
   void bring_up_to_date(NodeKey) const {}
   void bring_normal_up_to_date(const Corner&) const {}
 
-  [[nodiscard]] Vec3<Real> corner_point(uint32_t index) const { return point_of(this->corners()[index]); }
-  [[nodiscard]] Vec3<Real> point_of(const Corner& corner) const { return vec(corner.point); }
+  [[nodiscard]] Given<Vec3<Real>> corner_point(uint32_t index) const { return point_of(this->corners()[index]); }
+  [[nodiscard]] Given<Vec3<Real>> point_of(const Corner& corner) const { return given_vec(corner.point); }
   // fdcg_connection_type
   [[nodiscard]] uint8_t type_of(const fdcg_connection& connection) const { return connection.type; }
 

@@ -17,7 +17,7 @@ namespace fdcg {
 // B(x), SIDE-1: beyond this distance from a face's plane, rounding cannot have changed the sign of Plane::distance at x: the
 // stored normal is good to two units in the last place, the offset to one, the sum to three.
 template <class Graph, class Real = typename Graph::Real>
-inline Real plane_rounding_bound(const Graph& graph, Vec3<Real> x) {
+FDCG_ONE_COPY Real plane_rounding_bound(const Graph& graph, const Vec3<Real>& x) {
   return 8 * RealLimits<Real>::kEpsilon * (norm1(x) + 2 * static_cast<Real>(graph.header()->extent));
 }
 
@@ -32,7 +32,7 @@ inline Real own_plane_rounding(const Plane& plane, Vec3<Real> x) {
 // FACE-5, FACE-6: a place so near to a plane is on it, where both were computed: the plane's offset may have cancelled
 // to 0, and then is good to a unit of the extent's last place, not of its own.
 template <class Real>
-inline Real on_plane_rounding(Vec3<Real> x, Real extent) {
+FDCG_ONE_COPY Real on_plane_rounding(const Vec3<Real>& x, Real extent) {
   return 4 * RealLimits<Real>::kEpsilon * (norm1(x) + extent);
 }
 
@@ -45,7 +45,7 @@ inline double at_corner_rounding(Vec3<double> corner, double extent) {
 
 // FACE-1: a god-object so near to a Voronoi plane sits on it: the rounding of its own place and of that plane's distance.
 template <class Real>
-inline Real rim_rounding(Vec3<Real> god_object, Real extent) {
+inline Real rim_rounding(const Vec3<Real>& god_object, Real extent) {
   return 8 * RealLimits<Real>::kEpsilon * (norm1(god_object) + extent);
 }
 
@@ -60,7 +60,7 @@ inline Real slab_depth(double deviation, Real bound) {
 
 // FACE-6, EDGE-6: a place so near to an end of an edge is meant to be the vertex: the rounding of a place on the edge's line.
 template <class Real>
-inline Real end_rounding(Vec3<Real> start, Real length) {
+inline Real end_rounding(const Vec3<Real>& start, Real length) {
   return 8 * RealLimits<Real>::kEpsilon * (norm1(start) + length);
 }
 

@@ -29,7 +29,7 @@ class WayToEdge {
  public:
   WayToEdge(Walk<Geometry>& walk, CornerRef<Geometry> corner, const FanEntry& edge)
       : walk_(walk),
-        corner_(widen(corner.point())),
+        corner_(corner.point()),
         target_(far_end(walk.graph, edge)),
         target_bound_(plane_rounding_bound(walk.graph, target_)) {
     const ConnectionRef<Geometry> connection = walk.graph.connection(edge.connection);
@@ -41,10 +41,8 @@ class WayToEdge {
     is_outside_ = is_free_of_edge(connection.type(), sides[0] < 0, sides[1] < 0);
     // The other corner of the face to the left, so that a HIP on that face's plane is in front of it; on both planes, of the
     // one on whose side of the edge it is.
-    tie_ = sides[edge.end] == 0 &&
-                   (sides[1 - edge.end] != 0 || turns_left(widen(target_), widen(walk.hip), walk.graph.node(edge.node)))
-               ? -1
-               : 1;
+    tie_ = sides[edge.end] == 0 && (sides[1 - edge.end] != 0 || turns_left(target_, walk.hip, walk.graph.node(edge.node))) ? -1
+                                                                                                                           : 1;
   }
 
   // A face of the fan. Call for each, or for all that the plane of the way can meet.
@@ -84,14 +82,13 @@ class WayToEdge {
   }
   // Of a HIP on the face's plane: between the face's sides at the corner, or on one.
   bool is_in_sector(NodeRef<Geometry> node, uint32_t left, uint32_t right) {
-    const Vec3<double> hip = widen(walk_.hip);
-    return turns_left(widen(walk_.graph.corner_point(left)), hip, node) &&
-           turns_left(hip, widen(walk_.graph.corner_point(right)), node);
+    return turns_left(walk_.graph.corner_point(left), walk_.hip, node) &&
+           turns_left(walk_.hip, walk_.graph.corner_point(right), node);
   }
   // Whether b is to the left of a about the corner, seen from the front of a node that they lie on; or in line with it.
-  [[gnu::noinline, gnu::cold]] bool turns_left(const Vec3<double>& a, const Vec3<double>& b, NodeRef<Geometry> node) {
-    const Vec3<double> above = corner_ + widen(node.normal()) * walk_.graph.header()->extent;
-    return orient3d_sign(corner_, a, b, above, &work_left_) >= 0;
+  [[gnu::noinline, gnu::cold]] bool turns_left(const Vec3<Real>& a, const Vec3<Real>& b, NodeRef<Geometry> node) {
+    const Vec3<double> corner = widen(corner_), above = corner + widen(node.normal()) * walk_.graph.header()->extent;
+    return orient3d_sign(corner, widen(a), widen(b), above, &work_left_) >= 0;
   }
   [[nodiscard]] int beside(int sign) const { return sign == 0 ? tie_ : sign; }
   // Kept for the last: the next face of the fan asks for it again.
@@ -99,8 +96,7 @@ class WayToEdge {
     if (corner != last_) {
       last_ = corner;
       spend(&work_left_, kFanSignWork);
-      last_sign_ =
-          orient3d_sign(widen(walk_.hip), corner_, widen(target_), widen(walk_.graph.corner_point(corner)), &work_left_);
+      last_sign_ = orient3d_sign(walk_.hip, corner_, target_, walk_.graph.corner_point(corner), &work_left_);
     }
     return last_sign_;
   }
@@ -114,7 +110,7 @@ class WayToEdge {
 
   Walk<Geometry>& walk_;
   uint32_t work_left_ = kMuch;
-  const Vec3<double> corner_;
+  const Vec3<Real> corner_;
   Vec3<Real> target_;
   Real target_bound_;
   uint32_t beside_[2];

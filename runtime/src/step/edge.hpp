@@ -110,9 +110,8 @@ template <class Geometry, class Real = typename Geometry::Real>
       edge_load(walk.friction.has_wedge, walk.graph.node(connection.node(0)), walk.graph.node(connection.node(1)), across);
   const Slip<Real> slip = walk.friction.slip(walk.god_object, square(ahead), load);
   if (slip.is_rest && !(walk.friction.mu_static == 0 && is_at_end(line, foot + ahead))) return rest();
-  const Feature landed =
-      place_on_edge(walk, index, line, (ahead > 0) != FDCG_MUTANT("edge-slides-past") ? foot + slip.gap : foot - slip.gap);
-  return landed == walk.active ? rest() : go_to(landed);
+  place_on_edge(walk, index, line, (ahead > 0) != FDCG_MUTANT("edge-slides-past") ? foot + slip.gap : foot - slip.gap);
+  return walk.seat == walk.active ? rest() : go_to(walk.seat);
 }
 
 }  // namespace fdcg

@@ -35,7 +35,7 @@ template <class Geometry, class Real = typename Geometry::Real>
   const Real rounding = FDCG_MUTANT("ends-on-plane") ? Real(0) : on_plane_rounding(to, node.extent());
   Crossing<Real> first;
   for (; k < node.side_count(); ++k) {
-    const Plane<Real> plane = node.voronoi_plane(k);
+    const auto& plane = node.voronoi_plane(k);
     const Real s1 = plane.distance(to);
     if (!(s1 >= -rounding)) continue;
     const Real s0 = plane.distance(from);
@@ -145,10 +145,10 @@ inline bool is_far(const GraphView<Geometry>& graph, Vec3<Real> hip) {
 // one plane but for rounding: beyond the end of one the point is on the next. Where the next one turns away, however little, it
 // is at the corner.
 template <class Geometry, class Real = typename Geometry::Real>
-[[gnu::noinline, gnu::cold]] Feature place_on_rim(Walk<Geometry>& walk, NodeRef<Geometry> node, uint32_t side,
-                                                  const Vec3<Real>& point) {
+[[gnu::noinline, gnu::cold]] void place_on_rim(Walk<Geometry>& walk, NodeRef<Geometry> node, uint32_t side,
+                                               const Vec3<Real>& point) {
   const Real in_line = on_plane_rounding(point, node.extent()) + Real(2 * walk.graph.max_deviation());
-  const Plane<Real> plane = node.voronoi_plane(side);
+  const auto& plane = node.voronoi_plane(side);
   EdgeLine<Real> line(walk.graph, node, side);
   Real u = line.parameter(point);
   for (uint32_t i = 0; i < node.side_count() && (u < 0 || u > line.length); ++i) {
@@ -165,7 +165,7 @@ template <class Geometry, class Real = typename Geometry::Real>
     line = next;
     u = v;
   }
-  return place_on_edge(walk, node.connection(side), line, u);
+  place_on_edge(walk, node.connection(side), line, u);
 }
 
 // The side on which the god-object sits within the rounding of its own place, or FDCG_NONE. Near its plane, and not past its
@@ -182,14 +182,14 @@ inline uint32_t side_under(const Walk<Geometry>& walk, NodeRef<Geometry> node) {
 // contact-model FACE-1: the face has lost the HIP: the seat's rule decides; without a seat this is Free. A god-object that slid
 // to the face's rim but for rounding may be behind the faces across, so it is seated there first.
 template <class Geometry>
-[[gnu::noinline, gnu::cold]] Feature leave_face(Walk<Geometry>& walk, NodeRef<Geometry> node) {
-  if (!walk.seat.is_free()) return walk.seat;
+[[gnu::noinline, gnu::cold]] void leave_face(Walk<Geometry>& walk, NodeRef<Geometry> node) {
+  if (!walk.seat.is_free()) return;
   const uint32_t side = side_under(walk, node);
   if (side == FDCG_NONE) {
     walk.god_object = foot_on(node, walk.god_object);
-    return kFree;
+  } else {
+    place_on_rim(walk, node, side, walk.god_object);
   }
-  return place_on_rim(walk, node, side, walk.god_object);
 }
 
 // Places the god-object where the move says. Returns what comes next.
@@ -197,7 +197,10 @@ template <class Geometry, class Real = typename Geometry::Real>
 [[gnu::noinline, gnu::cold]] Decision carry_out(Walk<Geometry>& walk, const FaceMove<Real>& move) {
   using Kind = typename FaceMove<Real>::Kind;
   const NodeRef<Geometry> node = walk.graph.node(walk.active.index);
-  if (move.kind == Kind::leaves) return go_to(FDCG_MUTANT("seat") ? kFree : leave_face(walk, node));
+  if (move.kind == Kind::leaves) {
+    if (!FDCG_MUTANT("seat")) leave_face(walk, node);
+    return go_to(walk.seat.is_free() || FDCG_MUTANT("seat") ? kFree : walk.seat);
+  }
   if (move.kind == Kind::slides) {
     const Real off = is_far(walk.graph, walk.hip) ? distance_from(node, move.target) : Real(0);
     if (absolute(off) <= kMostOffPlane<Real> * node.extent()) walk.place(move.target - node.normal() * off, kFree);
@@ -207,9 +210,9 @@ template <class Geometry, class Real = typename Geometry::Real>
   if (node.side_count() > walk.graph.kPrefetchedSides) walk.graph.prefetch_crossing(node, side);  // else it has been
   const Vec3<Real> from = walk.god_object, way = (move.target - from) - walk.rounding_residual;
   const Vec3<Real> ahead = walk.rounding_residual + way * move.crossing.fraction;  // from `from` to the crossing
-  const Feature landed = place_on_rim(walk, node, side, from + ahead);
-  if (landed.state == FDCG_EDGE && !FDCG_MUTANT("lost")) walk.rounding_residual = (from - walk.god_object) + ahead;
-  return go_to(landed);
+  place_on_rim(walk, node, side, from + ahead);
+  if (walk.seat.state == FDCG_EDGE && !FDCG_MUTANT("lost")) walk.rounding_residual = (from - walk.god_object) + ahead;
+  return go_to(walk.seat);
 }
 
 // shading.hpp
@@ -229,7 +232,7 @@ template <class Geometry, class Real = typename Geometry::Real>
       }
     }
   }
-  const Vec3<Real> stands = walk.god_object - walk.hip, reach = stands + walk.rounding_residual;
+  const Vec3<Real> stands = walk.gap(), reach = stands + walk.rounding_residual;
   return carry_out(
       walk, move_on_face(node, walk.friction, walk.hip, walk.hip_bound, walk.side(node), walk.god_object, stands, reach));
 }

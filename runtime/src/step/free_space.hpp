@@ -32,7 +32,8 @@ template <class Geometry, class Real = typename Geometry::Real>
     walk.place(walk.graph.corner_point(first.feature.index), first.feature);
   } else if (first.feature.state == FDCG_EDGE) {
     const EdgeLine<Real> line(walk.graph, first.feature.index);
-    walk.active = place_on_edge(walk, first.feature.index, line, line.parameter(point));
+    place_on_edge(walk, first.feature.index, line, line.parameter(point));
+    walk.active = walk.seat;
   } else {
     walk.place(first.feature.is_free() ? to : point, kFree);
   }
@@ -129,7 +130,8 @@ template <class Geometry, class Real = typename Geometry::Real>
 inline uint32_t sweep_with_loan(Walk<Geometry>& walk, Feature left, const Vec3<Real>& stood, FreeSpace* space) {
   CarriedSweep* const carried = &space->inner->sweep;
   ClearBall* const ball = &space->inner->clear_ball;
-  if (!(left.is_free() && space->looks_for_balls && is_in_clear_ball(*ball, widen(walk.hip)))) end_clear_ball(ball);
+  const bool may_look = FDCG_WITH_CLEAR_BALLS && space->looks_for_balls && left.is_free();
+  if (!(may_look && is_in_clear_ball(*ball, widen(walk.hip)))) end_clear_ball(ball);
   if (carried->is_carried != 0) {
     if (!finish_carried_sweep(walk, carried, &space->work_left)) return FDCG_RESULT_SWEEP_BOUND;
     if (!walk.active.is_free()) return 0;
@@ -144,8 +146,8 @@ inline uint32_t sweep_with_loan(Walk<Geometry>& walk, Feature left, const Vec3<R
   }
   const Vec3<Real> to = walk.hip, from = left.is_free() ? near_start(walk.graph, walk.god_object, to) : walk.god_object;
   const bool is_still = from.x == to.x && from.y == to.y && from.z == to.z;  // no way, no direction
-  const bool may_look = FDCG_WITH_CLEAR_BALLS && space->looks_for_balls && left.is_free() && walk.graph.hierarchy() != nullptr;
-  const bool has_looked = may_look && !(ball->radius2 > 0) && is_in_new_ball(walk.graph, from, to, space->inner);
+  const bool has_looked = may_look && walk.graph.hierarchy() != nullptr && !(ball->radius2 > 0) &&
+                          is_in_new_ball(walk.graph, from, to, space->inner);
   if (is_still || (has_looked && passes_near_nodes(walk.graph, *space->inner, from, to))) {
     walk.place(to, kFree);
     carried->stalled_sweeps = 0;
@@ -154,7 +156,8 @@ inline uint32_t sweep_with_loan(Walk<Geometry>& walk, Feature left, const Vec3<R
   walk.god_object = from;
   Sweep<Geometry> sweep(walk.graph, left.is_free() ? from : stood, from, to, left, &space->work_left);
   FirstHit<Real> first;
-  const bool is_in_ball = ball->radius2 > 0 && ball->lists_all != 0;  // nothing but what it lists can be met
+  const bool is_in_ball =
+      FDCG_WITH_CLEAR_BALLS && ball->radius2 > 0 && ball->lists_all != 0;  // then only what it lists can be met
   if (is_in_ball) sweep.run_near(space->inner->near.node, ball->near_count, &first);
   if (is_in_ball || sweep.run(&first)) {
     arrive(walk, sweep, to, first);

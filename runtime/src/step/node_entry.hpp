@@ -46,7 +46,7 @@ struct FirstHit {
 // Whether a way ends in front of a node's plane, or begins behind it, by more than rounding could change: it does not enter the
 // node. `slab`: of the way's beginning (slab_depth).
 template <class Real>
-inline bool surely_passes(Plane<Real> plane, Vec3<Real> from, Vec3<Real> to, Real to_bound, Real slab) {
+FDCG_HOT bool surely_passes(const Plane<Real>& plane, const Vec3<Real>& from, const Vec3<Real>& to, Real to_bound, Real slab) {
   const Real end = plane.distance(to);
   return end > to_bound || (end < -to_bound && plane.distance(from) < -slab);
 }
@@ -75,7 +75,7 @@ class NodeEntry {
 
   // Whether all of the way is known to be over the face that it meets first; not told of one met in a tick before.
   [[nodiscard]] bool is_over() const { return is_over_.get(); }
-  [[nodiscard]] Vec3<Real> point_at(Real fraction) const { return from_ + way_ * fraction; }
+  [[nodiscard]] FDCG_ONE_COPY Vec3<Real> point_at(Real fraction) const { return from_ + way_ * fraction; }
 
   static constexpr Real kNever = 2;  // a fraction after the end
   // Where a way that passes inside a node's loop, and comes in at `fraction` up to rounding error, surely is over the face: of
@@ -122,8 +122,8 @@ class NodeEntry {
   // first to the second; 0 where the two meet exactly. What two neighbours say of their edge are exact opposites: so are the
   // rounded products.
   [[nodiscard, gnu::noinline, gnu::cold]] int exact_orientation(NodeRef<Geometry> node, uint32_t start, uint32_t end) const {
-    return orient3d_sign(widen(from_), widen(to_), widen(graph_.corner_point(node.corner(start))),
-                         widen(graph_.corner_point(node.corner(end))), work_left_);
+    return orient3d_sign(from_, to_, graph_.corner_point(node.corner(start)), graph_.corner_point(node.corner(end)),
+                         work_left_);
   }
 
   // The face that the way leaves, or that face at the edge which it is in front of since LEAVE-2, if the corner is one of its
@@ -150,7 +150,7 @@ class NodeEntry {
     spend(work_left_, kSideWork * node.side_count());
     bool is_beside = false;
     for (uint32_t k = 0; k < node.side_count(); ++k) {
-      const Plane<Real> plane = node.voronoi_plane(k);
+      const auto& plane = node.voronoi_plane(k);
       const Real s0 = plane.distance(from_) - outwards, s1 = plane.distance(to_) - outwards;
       const bool begins_inside = s0 <= 0, ends_inside = s1 <= 0;
       is_beside = is_beside || !(begins_inside || ends_inside);
@@ -226,7 +226,7 @@ class NodeEntry {
     bool is_inside = kTellsOver && !node.is_inexact();
     uint32_t k = 0;
     for (; k < node.side_count(); ++k) {
-      const Plane<Real> plane = node.stored_plane(k);
+      const auto& plane = node.stored_plane(k);
       const Real begin = plane.distance(from_);
       if (begin > off && plane.distance(to_) > off) break;
       if constexpr (kTellsOver) is_inside = is_inside && begin < -off && plane.distance(to_) < -off;
@@ -271,7 +271,7 @@ class NodeEntry {
   // begins over it.
   [[gnu::noinline, gnu::cold]] void try_other_wall(uint32_t n, NodeRef<Geometry> node) {
     if (left_.is_free() || !is_before_best(0, n)) return;
-    const Plane<Real> plane = node.plane();
+    const auto& plane = node.plane();
     // The offset is as good as the products at a corner that it makes up for; it may have cancelled to much less than them.
     const Vec3<Real> corner = graph_.corner_point(node.corner(0)), normal = plane.normal;
     const Plane<Real> uncancelled = {normal, norm1(Vec3<Real>{normal.x * corner.x, normal.y * corner.y, normal.z * corner.z})};
@@ -280,7 +280,7 @@ class NodeEntry {
     };
     if (is_behind(from_) && is_behind(stood_)) return;
     for (uint32_t k = 0; k < node.side_count(); ++k) {  // no further out than part_over allows, and not on its way out
-      const Plane<Real> beside = node.voronoi_plane(k);
+      const auto& beside = node.voronoi_plane(k);
       const Real off = beside.distance(from_);
       if (off > side_rounding(from_bound_, Real(0))) return;
       if (off > 0 && (beside.distance(to_) > off || !is_between_ends(node, k, from_))) return;
@@ -361,7 +361,7 @@ class NodeEntry {
   }
 
   // A bit for a side; the last one for all beyond.
-  static uint64_t bit_of(uint32_t k) { return uint64_t{1} << (k < kLastBit ? k : kLastBit); }
+  FDCG_ONE_COPY static uint64_t bit_of(uint32_t k) { return uint64_t{1} << (k < kLastBit ? k : kLastBit); }
 
   [[gnu::noinline]] bool passes_inside(NodeRef<Geometry> node, Real fraction, uint64_t* met_exactly) {
     bool must_wind = false;

@@ -21,7 +21,7 @@ class Trail {
   Trail(Feature start, Vec3<Real> start_gap) : nearest2_(dot(start_gap, start_gap)), count_(1) { visited_[0] = key(start); }
 
   bool has_met_again(const Walk<Geometry>& walk) {
-    const Vec3<Real> gap = walk.god_object - walk.hip;
+    const Vec3<Real> gap = walk.gap();
     const Real now2 = dot(gap, gap);
     if (now2 < nearest2_) {
       nearest2_ = now2;
@@ -33,7 +33,7 @@ class Trail {
   }
   // Another feature at the same place. False: it has been visited. Of a circle of more features than fit the tick's work is the
   // end: a HIP so far away that no move on the object changes its rounded distance may be many features off.
-  bool may_visit(Feature feature) {
+  FDCG_ONE_COPY bool may_visit(Feature feature) {
     for (int i = 0; i < count_; ++i) {
       if (visited_[i] == key(feature)) return false;
     }
@@ -109,7 +109,8 @@ template <class Geometry, class Real = typename Geometry::Real>
     line.end_tolerance = corner_rounding(walk.hip_bound, Real(2 * walk.graph.max_deviation()));
     const Real u = line.parameter(walk.god_object);
     if (!is_at_end(line, u)) return false;
-    next = place_on_edge(walk, walk.rim, line, u);
+    place_on_edge(walk, walk.rim, line, u);
+    next = walk.seat;
   } else {
     const ConnectionRef<Geometry> connection = walk.graph.connection(walk.rim);
     const bool ends_there = connection.corner(0) == walk.seat.index || connection.corner(1) == walk.seat.index;
@@ -132,7 +133,7 @@ Progress move_god_object(Walk<Geometry>& walk, Feature start, Vec3<Real> start_g
     if (walk.active.is_free()) return progress;
     ++progress.transitions;
     start = walk.active;
-    start_gap = walk.god_object - walk.hip;
+    start_gap = walk.gap();
   } else {
     space->inner->sweep.stalled_sweeps = 0;  // none was carried here
   }
@@ -142,11 +143,11 @@ Progress move_god_object(Walk<Geometry>& walk, Feature start, Vec3<Real> start_g
     const Feature at = walk.active;
     const Decision decision = decided != nullptr ? *decided : apply_rule(walk);
     decided = nullptr;
-    if (decision.is_rest()) {
+    if (decision == rest()) {
       space->inner->sweep.stalled_sweeps = 0;
       return progress;
     }
-    walk.active = decision.next();
+    walk.active = next_of(decision);
     ++progress.transitions;
     if (FDCG_MUTANT("walk-cut") && progress.transitions > 3) return progress;
     if (walk.active.state == FDCG_FACE) walk.graph.prefetch_around(walk.graph.node(walk.active.index));
@@ -169,7 +170,7 @@ Progress move_god_object(Walk<Geometry>& walk, Feature start, Vec3<Real> start_g
       // No nearer: where the tick began the next one would do the same; elsewhere, with HIP and god-object where they were, a
       // circle may take several ticks (contact-model TICK-6).
       constexpr uint16_t kMostStalledTicks = 3;
-      const Vec3<Real> gap = walk.god_object - walk.hip;
+      const Vec3<Real> gap = walk.gap();
       const double* const last = space->last_hip;
       const bool has_moved =
           last[0] != walk.hip.x || last[1] != walk.hip.y || last[2] != walk.hip.z || norm1(gap - start_gap) > 0;

@@ -128,7 +128,7 @@ template <class Geometry>
 template <class Geometry, class Real = typename Geometry::Real>
 [[gnu::noinline, gnu::cold]] void walk_to_hip(Walk<Geometry>& walk, const FaceMove<Real>* move, uint32_t transitions,
                                               const fdcg_params& params, fdcg_contact* contact, fdcg_result* result) {
-  const Vec3<Real> start_gap = walk.god_object - walk.hip;
+  const Vec3<Real> start_gap = walk.gap();
   const Feature start = walk.active, hopped = transitions != 0 ? walk.seat : kFree;
   Decision decided = rest();
   if (move != nullptr) decided = carry_out(walk, *move);

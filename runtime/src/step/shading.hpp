@@ -150,8 +150,8 @@ template <class Geometry, class Real>
     }
   }
   const Decision decision = carry_out(walk, move);
-  if (move.kind != Kind::crosses || decision.next().state != FDCG_EDGE) return decision;
-  const uint32_t beyond = across(decision.next().index);
+  if (move.kind != Kind::crosses || next_of(decision).state != FDCG_EDGE) return decision;
+  const uint32_t beyond = across(next_of(decision).index);
   return beyond == FDCG_NONE ? decision : go_to({FDCG_FACE, beyond});
 }
 

@@ -59,6 +59,8 @@ struct Walk {
   [[nodiscard, gnu::noinline, gnu::hot]] Real side(NodeRef<Geometry> node) {
     return side_of(graph, node, hip, hip_bound, &work_left);
   }
+  // From the HIP to the god-object.
+  [[nodiscard]] FDCG_ONE_COPY Vec3<Real> gap() const { return god_object - hip; }
   void spend(uint32_t units) { fdcg::spend(&work_left, units); }
 
   // A move on a face's inside or along an edge.
@@ -81,28 +83,20 @@ struct Progress {
   uint32_t flags;        // fdcg_result_flag: what was cut short
 };
 
-// What a rule decides: stay (rest), or go on at another feature. One word: of parts written one by one the caller would wait
-// for the whole.
-class Decision {
- public:
-  static constexpr Decision rest() { return Decision(kRest); }
-  static constexpr Decision go_to(Feature next) { return Decision(uint64_t{next.index} << 32 | next.state); }
-
-  [[nodiscard]] bool is_rest() const { return word_ == kRest; }
-  [[nodiscard]] Feature next() const { return {static_cast<uint32_t>(word_), static_cast<uint32_t>(word_ >> 32)}; }
-
- private:
-  static constexpr uint64_t kRest = ~uint64_t{0};  // no state has such a number
-
-  explicit constexpr Decision(uint64_t word) : word_(word) {}
-
-  uint64_t word_;
+// What a rule decides: stay (rest), or go on at another feature. One word, which is returned in registers: of parts written one
+// by one the caller would wait for the whole.
+enum class Decision : uint64_t {
+  rest = ~uint64_t{0},  // no state has such a number
 };
 inline Decision rest() {
-  return Decision::rest();
+  return Decision::rest;
 }
 inline Decision go_to(Feature next) {
-  return Decision::go_to(next);
+  return Decision{uint64_t{next.index} << 32 | next.state};
+}
+inline Feature next_of(Decision decision) {
+  const auto word = static_cast<uint64_t>(decision);
+  return {static_cast<uint32_t>(word), static_cast<uint32_t>(word >> 32)};
 }
 
 // A connection's line, and how near to an end the vertex is meant (contact-model FACE-6).
@@ -117,7 +111,7 @@ struct EdgeLine : Edge<Real> {
     end_tolerance = end_rounding(this->start, this->length);
   }
 
-  [[nodiscard]] Real parameter(Vec3<Real> x) const { return dot(x - this->start, this->direction); }
+  [[nodiscard]] FDCG_HOT Real parameter(const Vec3<Real>& x) const { return dot(x - this->start, this->direction); }
 };
 
 // How far a place is past the nearer end of a side, less that end's tolerance times `share`; negative between the ends.
@@ -138,28 +132,26 @@ inline bool is_between_ends(NodeRef<Geometry> node, uint32_t k, const Vec3<Real>
 // since two edges of a needle's tip would pass it to each other.
 template <class Geometry, class Real = typename Geometry::Real>
 [[gnu::noinline, gnu::cold]] bool snapping_increases_distance(const Walk<Geometry>& walk, uint32_t corner) {
-  return norm(walk.graph.corner_point(corner) - walk.hip) > norm(walk.god_object - walk.hip);
+  return norm(walk.graph.corner_point(corner) - walk.hip) > norm(walk.gap());
 }
 
-// Places the god-object at u on a connection: on a corner at, past or within rounding of an end. Returns where it now is.
+// Places the god-object at u on a connection: on a corner at, past or within rounding of an end: walk.seat says which.
 template <class Geometry, class Real = typename Geometry::Real>
-[[gnu::noinline, gnu::cold]] Feature place_on_edge(Walk<Geometry>& walk, uint32_t connection_index, const EdgeLine<Real>& line,
-                                                   Real u) {
+[[gnu::noinline, gnu::cold]] void place_on_edge(Walk<Geometry>& walk, uint32_t connection_index, const EdgeLine<Real>& line,
+                                                Real u) {
   walk.rim = connection_index;
+  Vec3<Real> point = line.start + line.direction * u;
+  Feature on = {FDCG_EDGE, connection_index};
   for (uint32_t end = 0; end < 2; ++end) {
     const Real from_end = end == 0 ? u : line.length - u;
     if (FDCG_MUTANT("lands-on-vertex") ? !(from_end < 0) : !(from_end <= line.end_tolerance)) continue;
     const uint32_t at = FDCG_MUTANT("corners-swapped") ? 1 - end : end;
-    const Feature vertex = {FDCG_VERTEX, walk.graph.connection(connection_index).corner(at)};
-    walk.place(from_end > 0 && snapping_increases_distance(walk, vertex.index) ? line.start + line.direction * u
-                                                                               : walk.graph.corner_point(vertex.index),
-               vertex);
-    return vertex;
+    on = {FDCG_VERTEX, walk.graph.connection(connection_index).corner(at)};
+    if (!(from_end > 0 && snapping_increases_distance(walk, on.index))) point = walk.graph.corner_point(on.index);
+    break;
   }
-  if (FDCG_MUTANT("slip-flag-feature")) walk.friction.is_slipping = false;
-  const Feature edge = {FDCG_EDGE, connection_index};
-  walk.place(line.start + line.direction * u, edge);
-  return edge;
+  if (FDCG_MUTANT("slip-flag-feature") && on.state == FDCG_EDGE) walk.friction.is_slipping = false;
+  walk.place(point, on);
 }
 
 }  // namespace fdcg

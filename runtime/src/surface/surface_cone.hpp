@@ -212,7 +212,7 @@ struct ConeSurface {
   Decision rim_rule(SurfaceWalk& walk) const {
     const uint32_t end = walk.active.index;
     const Decision here = leave_rim(walk, end);
-    if (!here.is_rest() || sign > 0 || !slide_on_rim(walk, end)) return here;
+    if (here != rest() || sign > 0 || !slide_on_rim(walk, end)) return here;
     return leave_rim(walk, end);  // elsewhere on the rim the HIP may be behind a face alone
   }
   // Rest where the rim holds the god-object.

@@ -33,12 +33,12 @@ Progress move_god_object(const Shape& shape, SurfaceWalk& walk) {
   }
   for (; progress.transitions < kMostTransitions; ++progress.transitions) {
     const Decision decision = shape.rule(walk);
-    if (decision.is_rest()) {
+    if (decision == rest()) {
       if (walk.moves_left == 0) progress.flags = FDCG_RESULT_TRANSITION_BOUND;
       return progress;
     }
-    if (!(decision.next() == kFree)) {
-      walk.active = decision.next();
+    if (!(next_of(decision) == kFree)) {
+      walk.active = next_of(decision);
       continue;
     }
     const bool is_convex_solid = Shape::kIsConvex && shape.sign > 0;  // what leaves it cannot meet it
