@@ -42,6 +42,20 @@ class Trail {
     return true;
   }
   [[nodiscard]] bool has_come_nearer() const { return has_come_nearer_; }
+  // Whether faces have been visited, and the HIP is on the plane of each, but for rounding, and over none of them.
+  [[nodiscard, gnu::noinline, gnu::cold]] bool is_hip_beside_faces(const Walk<Geometry>& walk) const {
+    const Real most = side_rounding(walk.hip_bound, Real(0)) + Real(2 * walk.graph.max_deviation());
+    bool is_beside = false;
+    for (int i = 0; i < count_; ++i) {
+      if (visited_[i] >> 32 != FDCG_FACE) continue;
+      const NodeRef<Geometry> node = walk.graph.node(static_cast<uint32_t>(visited_[i]));
+      is_beside = false;
+      for (uint32_t k = 0; k < node.side_count(); ++k)
+        is_beside = is_beside || distance_beyond(node, k, walk.hip) > walk.hip_bound;
+      if (!is_beside || absolute(distance_from(node, walk.hip)) > most) return false;
+    }
+    return is_beside;
+  }
   // Where hops have led to the start, over this edge, which was nearer than all before.
   void begin_nearer(Feature edge) {
     visited_[count_++] = key(edge);
@@ -139,6 +153,7 @@ Progress move_god_object(Walk<Geometry>& walk, Feature start, Vec3<Real> start_g
   }
   Trail<Geometry> trail(start, start_gap);
   if (!hopped.is_free()) trail.begin_nearer(hopped);
+  bool was_let_go = false;
   while (true) {
     const Feature at = walk.active;
     const Decision decision = decided != nullptr ? *decided : apply_rule(walk);
@@ -152,6 +167,7 @@ Progress move_god_object(Walk<Geometry>& walk, Feature start, Vec3<Real> start_g
     if (FDCG_MUTANT("walk-cut") && progress.transitions > 3) return progress;
     if (walk.active.state == FDCG_FACE) walk.graph.prefetch_around(walk.graph.node(walk.active.index));
     if (walk.active.is_free()) {
+      was_let_go = true;
       if (trail.has_come_nearer()) space->inner->sweep.stalled_sweeps = 0;
       const Vec3<Real> stood = walk.god_object;
       step_clear_of(walk, at);
@@ -161,6 +177,12 @@ Progress move_god_object(Walk<Geometry>& walk, Feature start, Vec3<Real> start_g
     }
     if (!FDCG_MUTANT("met-again") && trail.has_met_again(walk) && !trail.retry_without_residual(walk) &&
         !goes_on_at_corner(walk, &trail)) {
+      if (was_let_go && trail.is_hip_beside_faces(walk)) {
+        space->inner->sweep.stalled_sweeps = 0;
+        walk.place(walk.hip, kFree);
+        walk.active = kFree;
+        return progress;
+      }
       // Of a face and an edge the face pulls; a shaded one pulls another way than its plane does.
       if (at.state == FDCG_FACE && walk.active.state == FDCG_EDGE && normals_of(walk, at.index) == nullptr) walk.active = at;
       return progress;
