@@ -3,7 +3,7 @@
 // four points with a common coordinate, are coplanar. For others the determinant is evaluated in double-double arithmetic,
 // which decides unless the points are within 2^-98 of their size of a plane. For those, the twelve coordinates are integer
 // multiples of one small unit, and the determinant is evaluated in integers: of machine size where the coordinates are of
-// similar magnitude, else of as many limbs as needed.
+// similar magnitude, else as sums of products in as many limbs as needed.
 #include "exact/exact_orient.hpp"
 
 #include <string.h>
@@ -27,11 +27,6 @@ using TwoLimbs = uint64_t;
 #endif
 constexpr int kLimbBits = 8 * sizeof(Limb);
 
-// From the largest coordinate that a step accepts (vec.hpp, kFar: 2^233) down to the last bit of the smallest double, with
-// two bits for the difference of two.
-constexpr int kLargestBits = 234 + 1074 + 2;
-constexpr int kLimbs = kLargestBits / kLimbBits + 1;
-
 // Products and sums of Splits err by 2^-101 of the terms' sizes at most, where no part falls below the normal numbers.
 inline Split joined(double high, double low) {
   const double sum = high + low;
@@ -50,28 +45,6 @@ inline Split operator-(Split a, Split b) {
   return a + Split{-b.value, -b.rest};
 }
 
-// An integer: sign and magnitude, lowest limb first, no leading zero limb. Where its limbs are is its owner's business (Room),
-// so that one routine serves all sizes.
-struct Whole {
-  Limb* const limb;
-  int count = 0;
-  bool is_negative = false;
-
-  explicit Whole(Limb* limbs) : limb(limbs) {}
-  Whole(const Whole&) = delete;
-  Whole& operator=(const Whole&) = delete;
-  void trim() {
-    while (count > 0 && limb[count - 1] == 0)
-      --count;
-  }
-};
-template <int kCapacity>
-struct Room : Whole {
-  Limb limbs[kCapacity];
-
-  Room() : Whole(limbs) {}
-};
-
 // A double as mantissa * 2^exponent, the mantissa odd or zero.
 struct Parts {
   uint64_t mantissa;
@@ -79,78 +52,19 @@ struct Parts {
   bool is_negative;
 };
 
-[[gnu::cold]] Parts parts_of(double x) {
-  uint64_t bits;
-  memcpy(&bits, &x, sizeof bits);
-  const int biased = static_cast<int>(bits >> 52 & 0x7FF);
-  uint64_t mantissa = bits & ((uint64_t{1} << 52) - 1);
-  if (biased != 0) mantissa |= uint64_t{1} << 52;
-  if (mantissa == 0) return {0, 0, false};
-  const int zeros = __builtin_ctzll(mantissa);
-  return {mantissa >> zeros, (biased != 0 ? biased : 1) - 1075 + zeros, bits >> 63 != 0};
-}
-
-// parts / 2^unit, which is an integer.
-[[gnu::cold]] void read_whole(const Parts& parts, int unit, Whole& w) {
-  w.count = 0;
-  w.is_negative = parts.is_negative;
-  if (parts.mantissa == 0) return;
-  const int shift = parts.exponent - unit;
-  int bit = shift % kLimbBits;
-  for (; w.count < shift / kLimbBits; ++w.count)
-    w.limb[w.count] = 0;
-  for (uint64_t rest = parts.mantissa; rest != 0; bit = 0) {
-    w.limb[w.count++] = static_cast<Limb>(rest << bit);
-    const int taken = kLimbBits - bit;
-    rest = taken < 64 ? rest >> taken : 0;
-  }
-}
-
-// The sign of |a| - |b|.
-[[gnu::cold]] int compare_sizes(const Whole& a, const Whole& b) {
-  if (a.count != b.count) return a.count < b.count ? -1 : 1;
-  for (int i = a.count; i-- > 0;) {
-    if (a.limb[i] != b.limb[i]) return a.limb[i] < b.limb[i] ? -1 : 1;
-  }
-  return 0;
-}
-
-// r = a - b: limb by limb the larger size plus or minus the smaller. r has room for one limb more than either, and is neither.
-[[gnu::cold]] void subtract(const Whole& a, const Whole& b, Whole& r) {
-  const bool is_sum = a.is_negative != b.is_negative, is_a_larger = compare_sizes(a, b) >= 0;
-  const Whole &large = is_a_larger ? a : b, &small = is_a_larger ? b : a;
-  const Limb flip = is_sum ? 0 : ~Limb{0};
-  TwoLimbs carry = is_sum ? 0 : 1;  // a difference is a sum with the complement, and one
-  r.is_negative = is_a_larger ? a.is_negative : !b.is_negative;
-  for (r.count = 0; r.count < large.count; ++r.count) {
-    carry += static_cast<TwoLimbs>(large.limb[r.count]) + ((r.count < small.count ? small.limb[r.count] : Limb{0}) ^ flip);
-    r.limb[r.count] = static_cast<Limb>(carry);
-    carry >>= kLimbBits;
-  }
-  if (is_sum && carry != 0) r.limb[r.count++] = static_cast<Limb>(carry);
-  r.trim();
-}
-
-// r = a b; r has room for both, and is neither.
-[[gnu::cold]] void multiply(const Whole& a, const Whole& b, Whole& r) {
-  r.is_negative = a.is_negative != b.is_negative;
-  r.count = a.count + b.count;
-  for (int i = 0; i < r.count; ++i)
-    r.limb[i] = 0;
-  for (int i = 0; i < a.count; ++i) {
-    TwoLimbs carry = 0;
-    for (int j = 0; j < b.count; ++j) {
-      carry += static_cast<TwoLimbs>(a.limb[i]) * b.limb[j] + r.limb[i + j];
-      r.limb[i + j] = static_cast<Limb>(carry);
-      carry >>= kLimbBits;
-    }
-    r.limb[i + b.count] = static_cast<Limb>(carry);
-  }
-  r.trim();
-}
-
 // Four points, where they are.
 using FourPoints = const Vec3<double>* const (&)[4];
+
+// To go through coordinates, by copies of the code where it is not made small.
+#ifdef __OPTIMIZE_SIZE__
+constexpr int kUnrolled = 1;
+#else
+constexpr int kUnrolled = 3;
+#endif
+static_assert(sizeof(Vec3<double>) == 3 * sizeof(double));
+inline const double* numbers_of(const Vec3<double>& point) {
+  return reinterpret_cast<const double*>(&point);
+}
 
 // Four points in multiples of 2^unit.
 struct Multiples {
@@ -164,12 +78,25 @@ struct Multiples {
   m.unit = 4096;  // larger than any exponent
   int top = -4096;
   for (int p = 0; p < 4; ++p) {
-    const double x[3] = {point[p]->x, point[p]->y, point[p]->z};
     for (int k = 0; k < 3; ++k) {
-      const Parts part = m.part[p][k] = parts_of(x[k]);
+      Parts& part = m.part[p][k];
+      uint64_t bits;
+      memcpy(&bits, numbers_of(*point[p]) + k, sizeof bits);
+      int exponent = static_cast<int>(bits >> 52 & 0x7FF);
+      part.is_negative = bits >> 63 != 0;
+      part.mantissa = bits & ((uint64_t{1} << 52) - 1);
+      if (exponent != 0) {
+        part.mantissa |= uint64_t{1} << 52;
+      } else {
+        exponent = 1;
+      }
       if (part.mantissa == 0) continue;
-      const int end = part.exponent + 64 - __builtin_clzll(part.mantissa);
-      if (part.exponent < m.unit) m.unit = part.exponent;
+      const int zeros = __builtin_ctzll(part.mantissa);
+      exponent += 64 - 1075;
+      const int end = exponent - __builtin_clzll(part.mantissa);
+      part.mantissa >>= zeros;
+      part.exponent = exponent += zeros - 64;
+      if (exponent < m.unit) m.unit = exponent;
       if (end > top) top = end;
     }
   }
@@ -208,43 +135,72 @@ constexpr int kWordBits = 60;
 }
 #endif
 
-[[gnu::noinline, gnu::cold]] int sign_in_limbs(const Multiples& m) {
-  constexpr int kEdge = kLimbs + 1, kMinor = 2 * kEdge + 1, kProduct = kMinor + kEdge;
-  Room<kEdge> edge[3][3];  // from the first point to each other
-  for (int k = 0; k < 3; ++k) {
-    Room<kLimbs> first, other;
-    read_whole(m.part[0][k], m.unit, first);
-    for (int p = 0; p < 3; ++p) {
-      read_whole(m.part[p + 1][k], m.unit, other);
-      subtract(other, first, edge[p][k]);
+// Bits of a product of three coordinates, from the largest that a step accepts (vec.hpp, kFar: 2^233) down to the last bit of
+// the smallest double, and of the sum of 24.
+constexpr int kMostBits = 3 * (234 + 1074) + 5;
+constexpr int kMantissaBits = 53;
+constexpr unsigned limbs_of(unsigned bits) {
+  return bits / kLimbBits + 1;
+}
+
+// to += a b: a of up to `count` limbs, lowest first, not zero. `to` has room for all of a b, and for the carry as far as it
+// goes.
+[[gnu::noinline, gnu::cold]] void add_product(const Limb* a, unsigned count, uint64_t b, Limb* to) {
+  while (a[count - 1] == 0)
+    --count;
+  for (; b != 0; ++to) {
+    TwoLimbs carry = 0;
+    for (unsigned i = 0; i < count || carry != 0; ++i) {
+      carry += to[i];
+      if (i < count) carry += static_cast<TwoLimbs>(a[i]) * static_cast<Limb>(b);
+      to[i] = static_cast<Limb>(carry);
+      carry >>= kLimbBits;
     }
+    b = kLimbBits < 64 ? b >> kLimbBits % 64 : 0;
   }
-  const auto &u = edge[0], &v = edge[1], &w = edge[2];
-  Room<kProduct + 1> sum[2];  // in turns
-  for (int k = 0; k < 3; ++k) {
-    const int i = k == 2 ? 0 : k + 1, j = k == 0 ? 2 : k - 1;
-    Room<2 * kEdge> first, second;
-    Room<kMinor> minor;
-    Room<kProduct> term;
-    multiply(u[i], v[j], first);
-    multiply(u[j], v[i], second);
-    subtract(second, first, minor);
-    multiply(minor, w[k], term);
-    subtract(sum[k & 1], term, sum[1 - (k & 1)]);
+}
+
+// The determinant of four rows (x, y, z, 1): x of one point times y of another times z of a third, in all 24 orders of the
+// points. What is above zero and what is below is added up apart, and the two sums are compared.
+[[gnu::noinline, gnu::cold]] int sign_in_limbs(const Multiples& m) {
+  constexpr unsigned kFirst = limbs_of(kLimbBits - 1 + kMantissaBits), kSecond = limbs_of(kLimbBits - 1 + 2 * kMantissaBits);
+  constexpr unsigned kThird = limbs_of(kLimbBits - 1 + 3 * kMantissaBits);
+  Limb sum[2][limbs_of(kMostBits) + kThird];
+  const unsigned count = limbs_of(3 * static_cast<unsigned>(m.bits) + 5) + kThird;
+  for (unsigned i = 0; i < count; ++i)
+    sum[0][i] = sum[1][i] = 0;
+  const Parts* point[4] = {m.part[0], m.part[1], m.part[2], m.part[3]};
+  for (unsigned n = 0; n < 24; ++n) {
+    const Parts &x = point[0][0], &y = point[1][1], &z = point[2][2];
+    if ((x.mantissa & y.mantissa & z.mantissa) != 0) {  // odd, each
+      const unsigned shift = static_cast<unsigned>(x.exponent + y.exponent + z.exponent - 3 * m.unit);
+      const Limb bit = Limb{1} << shift % kLimbBits;
+      Limb first[kFirst] = {}, second[kSecond] = {};
+      add_product(&bit, 1, x.mantissa, first);
+      add_product(first, kFirst, y.mantissa, second);
+      const unsigned is_above = (n ^ x.is_negative ^ y.is_negative ^ z.is_negative) & 1;
+      add_product(second, kSecond, z.mantissa, sum[is_above] + shift / kLimbBits);
+    }
+    // The next order, by an exchange of neighbours ("plain changes"), which changes the sign.
+    const unsigned at = 0x2486u >> 2 * (n % 8) & 3;  // 2, 1, 0, 2, 0, 1, 2, 0
+    const Parts* const other = point[at];
+    point[at] = point[at + 1];
+    point[at + 1] = other;
   }
-  const Whole& determinant = sum[1];
-  if (determinant.count == 0) return 0;
-  return determinant.is_negative ? -1 : 1;
+  for (unsigned i = count; i-- > 0;) {
+    if (sum[0][i] != sum[1][i]) return sum[0][i] < sum[1][i] ? 1 : -1;
+  }
+  return 0;
 }
 
 // The determinant, with an error of at most 2^-98 of the size of its products.
 [[gnu::noinline, gnu::cold]] double determinant_in_pairs(FourPoints point) {
   Split edge[3][3];
   for (int p = 0; p < 3; ++p) {
-    const Vec3<double>&to = *point[p + 1], &from = *point[0];
-    edge[p][0] = exact_sum(to.x, -from.x);
-    edge[p][1] = exact_sum(to.y, -from.y);
-    edge[p][2] = exact_sum(to.z, -from.z);
+    const double *to = numbers_of(*point[p + 1]), *from = numbers_of(*point[0]);
+#pragma GCC unroll kUnrolled
+    for (int k = 0; k < 3; ++k)
+      edge[p][k] = exact_sum(to[k], -from[k]);
   }
   const auto &u = edge[0], &v = edge[1], &w = edge[2];
   Split sum = {0, 0};
@@ -255,20 +211,21 @@ constexpr int kWordBits = 60;
   return sum.value;
 }
 
-inline bool are_same(double a, double b, double c, double d) {
-  return a == b && a == c && a == d;
-}
-
 // Trivially coplanar points: a segment that begins in a corner touches all its edges there, and meshes have axis-aligned
 // planes.
 inline bool is_plainly_flat(FourPoints point) {
-  const auto &a = *point[0], &b = *point[1], &c = *point[2], &d = *point[3];
   for (int i = 1; i < 4; ++i) {
     for (int j = 0; j < i; ++j) {
       if (point[i]->x == point[j]->x && point[i]->y == point[j]->y && point[i]->z == point[j]->z) return true;
     }
   }
-  return are_same(a.x, b.x, c.x, d.x) || are_same(a.y, b.y, c.y, d.y) || are_same(a.z, b.z, c.z, d.z);
+#pragma GCC unroll kUnrolled
+  for (int k = 0; k < 3; ++k) {
+    const double first = numbers_of(*point[0])[k];
+    if (first == numbers_of(*point[1])[k] && first == numbers_of(*point[2])[k] && first == numbers_of(*point[3])[k])
+      return true;
+  }
+  return false;
 }
 
 // `bound`: of the filter, 4 epsilons of the products' size.

@@ -7,9 +7,9 @@
 namespace fdcg {
 
 // The sign (-1, 0, +1) of ((b - a) x (c - a)) . (d - a): +1 when d is in front of the plane a, b, c (counter-clockwise seen
-// from its front). Exact for every finite coordinate up to 1e70. Some 40 instructions where the filter decides, else some 450;
-// for points in a plane, or within 2^-98 of the size of one, 1,500, or 4,700 where the coordinates differ very much in size.
-// Work beyond the 40 is subtracted from *work_left; null: not counted.
+// from its front). Exact for every finite coordinate up to 1e70. Some 70 instructions where the filter decides, else some 900;
+// for points in a plane, or within 2^-98 of the size of one, 2,000, or 9,000 where the coordinates differ very much in size.
+// Work beyond the 70 is subtracted from *work_left; null: not counted.
 int orient3d_sign(const Vec3<double>& a, const Vec3<double>& b, const Vec3<double>& c, const Vec3<double>& d,
                   uint32_t* work_left = nullptr);
 
