@@ -86,12 +86,12 @@ class AnywhereCase(Case):
         return os.path.join(folder, "runtime", "libfdcg_runtime.a")
 
     def firmware(self, processor, library, *sources, flags=(), link=("-Wl,--gc-sections",)):
-        """A program for the board: the example's start-up code and linker script, no standard library but newlib's C."""
+        """A program for the board: the example's start-up code, memcpy, memset and linker script, and newlib's C for the rest."""
         target = ["-mcpu=" + processor, "-mthumb", "-mfloat-abi=hard"]
         includes = ["-I", str(RUNTIME / "include"), "-I", str(FIRMWARE), "-I", str(pathlib.Path(__file__).parent)]
         objects = self.compile_all([(["arm-none-eabi-gcc", *target, "-Os", "-ffunction-sections", *C, *includes, *flags, "-c", source],
                                      self.path(f"{processor}-{pathlib.Path(source).name}.o"))
-                                    for source in (*sources, str(FIRMWARE / "startup.c"))])
+                                    for source in (*sources, str(FIRMWARE / "startup.c"), str(FIRMWARE / "memory.c"))])
         program = self.path(processor + ".elf")
         self.run_program("arm-none-eabi-gcc", *target, "-nostartfiles", *link, "-T", str(FIRMWARE / "mps2.ld"),
                          *objects, library, "-lm", "-o", program)
