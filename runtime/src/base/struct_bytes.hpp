@@ -4,6 +4,7 @@
 // header works with a newer library; the reverse is refused where parameters are checked.
 #pragma once
 
+#include <stddef.h>
 #include <string.h>
 
 #include "base/message.hpp"
@@ -26,11 +27,16 @@ inline const Struct& in_full(const Struct& given, Struct* room, Init init) {
 // Writes the defaults' first `struct_bytes` bytes over *to, which may be null; what lies beyond the library's own struct is
 // left as it is: such a struct is refused where it is checked.
 template <class Struct>
-inline void fill_defaults(Struct* to, Struct defaults, uint32_t struct_bytes) {
+inline void fill_defaults(Struct* to, const Struct& defaults, uint32_t struct_bytes) {
+  static_assert(offsetof(Struct, struct_bytes) == 0);
   if (to == nullptr) return;
   const uint32_t known = struct_bytes < sizeof(Struct) ? struct_bytes : uint32_t{sizeof(Struct)};
-  defaults.struct_bytes = struct_bytes;
   memcpy(static_cast<void*>(to), &defaults, known);
+  if (known < sizeof struct_bytes) {
+    memcpy(static_cast<void*>(to), &struct_bytes, known);
+  } else {
+    to->struct_bytes = struct_bytes;
+  }
 }
 
 // `what` names the struct and how to start from its defaults.

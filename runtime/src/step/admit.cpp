@@ -4,7 +4,7 @@
 namespace fdcg {
 namespace {
 
-bool is_in_range(double value) {
+[[gnu::noinline]] bool is_in_range(double value) {
   constexpr double kLargest = 1e30;  // above all that fdcg_check_params takes, and what a scale makes of it
   return value >= 0 && value <= kLargest;
 }

@@ -30,13 +30,15 @@ inline bool is_params_size(uint32_t struct_bytes) {
 // refusal and returns null; then neither contact nor graph are touched.
 [[gnu::cold]] const fdcg_params* admit(uint64_t mark, const fdcg_params& params, fdcg_params* room, fdcg_contact* contact,
                                        fdcg_result* result);
-// The same, at the cost of two comparisons for a contact that goes on and whole params.
+// The same, at the cost of two comparisons for a contact that goes on and whole params; of a call in a library built for size.
 inline const fdcg_params* admitted(uint64_t mark, const fdcg_params& params, fdcg_params* room, fdcg_contact* contact,
                                    fdcg_result* result) {
+#ifndef __OPTIMIZE_SIZE__
   if (internals_of(*contact).on == mark && params.struct_bytes == sizeof(fdcg_params)) [[likely]]
     return &params;
+#endif
   return admit(mark, params, room, contact, result);
 }
-[[gnu::cold]] void refuse_step(uint32_t flag, fdcg_result* result);
+[[gnu::noinline, gnu::cold]] void refuse_step(uint32_t flag, fdcg_result* result);
 
 }  // namespace fdcg

@@ -66,6 +66,18 @@ std::vector<double> forces(const fdcg_graph& graph, const fdcg_params* params) {
 
 }  // namespace
 
+TEST_CASE("of a struct of any size the first bytes are set, its size among them, and no more") {
+  fdcg_params whole;
+  fdcg_params_init(&whole, sizeof whole);
+  for (std::uint32_t bytes = 0; bytes <= sizeof whole; ++bytes) {
+    const LastBytes memory(bytes);
+    fdcg_params_init(memory.params(), bytes);
+    fdcg_params expected = whole;
+    expected.struct_bytes = bytes;
+    CHECK(std::memcmp(memory.params(), &expected, bytes) == 0);
+  }
+}
+
 TEST_CASE("an older, shorter struct is filled, checked and used, within its memory") {
   const LastBytes memory(sizeof(OlderParams));
   fdcg_params* params = memory.params();
