@@ -22,13 +22,13 @@ constexpr uint32_t kMaxNodesWithoutHierarchy = 4096;
 // With more, connection << 1 would not fit into 32 bits.
 constexpr uint32_t kMaxConnections = 0x7FFFFFFFu;
 
-uint64_t padded(uint64_t bytes) {
+size_t padded(size_t bytes) {
   return (bytes + FDCG_ALIGNMENT - 1) / FDCG_ALIGNMENT * FDCG_ALIGNMENT;
 }
 
 static_assert(FDCG_MOST_SECTIONS * sizeof(fdcg_section) + FDCG_ALIGNMENT <= kChecksumBlock);
-uint64_t table_bytes(const fdcg_header& header) {
-  return header.section_count * uint64_t{sizeof(fdcg_section)};
+size_t table_bytes(const fdcg_header& header) {
+  return header.section_count * sizeof(fdcg_section);
 }
 
 bool in_range(double value, double low, double high) {
@@ -63,7 +63,8 @@ fdcg_status check_header(const void* data, uint64_t bytes, fdcg_error* error) {
     return Message(error, FDCG_E_CHECKSUM, offsetof(fdcg_header, header_checksum))
         .text("the header's checksum does not match; the file is damaged, compile the mesh again");
   }
-  if (header.file_bytes != bytes) {
+  constexpr bool kFits = sizeof(size_t) == sizeof(uint64_t);
+  if (header.file_bytes != bytes || (!kFits && bytes > SIZE_MAX - FDCG_ALIGNMENT)) {  // no memory is as large
     return Message(error, FDCG_E_TRUNCATED, bytes)
         .say("the header promises ", header.file_bytes, " bytes, there are ", bytes, "; copy the file again");
   }
@@ -184,7 +185,7 @@ uint32_t record_bytes(const SectionRule& rule, const fdcg_header& header) {
   return header.real_bytes == 8 ? rule.record_f64 : rule.record_f32;
 }
 
-uint64_t expected_records(const SectionRule& rule, const fdcg_header& header, uint64_t found) {
+size_t expected_records(const SectionRule& rule, const fdcg_header& header, size_t found) {
   if (rule.count != kNowhere) {
     uint32_t count;
     memcpy(&count, reinterpret_cast<const unsigned char*>(&header) + rule.count, sizeof count);
@@ -199,7 +200,8 @@ uint64_t expected_records(const SectionRule& rule, const fdcg_header& header, ui
 
 // The sections follow one another without gaps, each padded to 64 bytes, up to the end of the file.
 fdcg_status check_sections(const fdcg_section* sections, const fdcg_header& header, fdcg_error* error) {
-  uint64_t at = padded(sizeof(fdcg_header) + table_bytes(header));
+  const auto end = static_cast<size_t>(header.file_bytes);  // it is in memory: open_trusted
+  size_t at = padded(sizeof(fdcg_header) + table_bytes(header));
   for (uint32_t i = 0; i < header.section_count; ++i) {
     const fdcg_section& section = sections[i];
     const auto refuse = [&](const char* what) -> fdcg_status {
@@ -209,29 +211,29 @@ fdcg_status check_sections(const fdcg_section* sections, const fdcg_header& head
     if (i > 0 && section.id <= sections[i - 1].id) return refuse("ids do not ascend");
     if (section.offset != at) return refuse("does not start where the one before it ends");
     if (section.reserved != 0) return refuse("reserved field is not zero");
-    uint64_t bytes;  // by a product: small processors have no 64-bit division
-    if (section.record_bytes == 0 || __builtin_mul_overflow(section.record_bytes, section.record_count, &bytes) ||
-        bytes > header.file_bytes - at) {
+    const auto count = static_cast<size_t>(section.record_count);
+    size_t bytes;  // by a product: small processors have no 64-bit division
+    if (section.record_bytes == 0 || count != section.record_count ||
+        __builtin_mul_overflow(section.record_bytes, count, &bytes) || bytes > end - at) {
       return refuse("reaches beyond the end of the file");
     }
     at += padded(bytes);
-    if (at > header.file_bytes) return refuse("reaches beyond the end of the file");
+    if (at > end) return refuse("reaches beyond the end of the file");
     for (const SectionRule& rule : kSectionRules) {
       if (rule.id != section.id) continue;
       if (section.record_bytes != record_bytes(rule, header))
         return refuse("has records of a wrong size, as early drafts of the format had; compile the mesh again");
-      if (section.record_count != expected_records(rule, header, section.record_count))
-        return refuse("has a wrong number of records");
+      if (count != expected_records(rule, header, count)) return refuse("has a wrong number of records");
     }
   }
-  if (at != header.file_bytes) {
+  if (at != end) {
     return Message(error, FDCG_E_LAYOUT, at).say("the last section ends at ", at, ", the file at ", header.file_bytes);
   }
   return FDCG_OK;
 }
 
 fdcg_status check_table(const void* data, const fdcg_header& header, fdcg_error* error) {
-  const uint64_t end = padded(sizeof(fdcg_header) + table_bytes(header));
+  const size_t end = padded(sizeof(fdcg_header) + table_bytes(header));
   if (end > header.file_bytes)
     return Message(error, FDCG_E_LAYOUT).text("the section table reaches beyond the end of the file");
   const auto* table = static_cast<const unsigned char*>(data) + sizeof(fdcg_header);
