@@ -130,10 +130,11 @@ class Wasm(HashCase):
 class CortexM(HashCase):
     """Bare metal: no operating system, the graphs in flash, -Os, the runtime by its own build and a toolchain file."""
 
-    def hashed_on(self, processor, toolchain, *options):
+    def hashed_on(self, processor, toolchain, *options, flags=(), link=("-Wl,--gc-sections",)):
         self.need("arm-none-eabi-gcc", "arm-none-eabi-g++", "qemu-system-arm", "ninja")
         library = self.cross_runtime(toolchain, *options)
-        program = self.firmware(processor, library, SOURCE, os.path.join(GRAPHS, "graphs.c"), flags=["-DFDCG_ON_BOARD", "-I", GRAPHS])
+        program = self.firmware(processor, library, SOURCE, os.path.join(GRAPHS, "graphs.c"), flags=["-DFDCG_ON_BOARD", "-I", GRAPHS, *flags],
+                                link=link)
         return self.run_program(*qemu(processor), program).stdout.decode()
 
     def test_cortex_m7_has_the_bits_of_both_precisions(self):
@@ -142,6 +143,13 @@ class CortexM(HashCase):
     def test_cortex_m4f_has_the_bits_of_f32_and_a_library_of_one_precision_leaves_the_other_alone(self):
         self.expected = self.expected.splitlines(keepends=True)[0]
         self.assert_same_bits(self.hashed_on("cortex-m4", "cortex-m4f", "-DFDCG_WITH_F64=OFF"), "cortex-m4f -Os")
+
+    def test_cortex_m7_has_the_bits_of_f32_without_short_ways_and_with_link_time_optimisation(self):
+        self.expected = self.expected.splitlines(keepends=True)[0]
+        less = [f"-DFDCG_WITH_{part}=OFF" for part in ("F64", "MESSAGES", "STATUS_TEXTS", "FAST_FACES", "CLEAR_BALLS")]
+        found = self.hashed_on("cortex-m7", "cortex-m7", *less, "-DCMAKE_INTERPROCEDURAL_OPTIMIZATION=ON", flags=["-flto"],
+                               link=["-Os", "-flto", "-Wl,--gc-sections"])
+        self.assert_same_bits(found, "cortex-m7 -Os -flto, without short ways")
 
 
 if __name__ == "__main__":
