@@ -33,7 +33,7 @@ enum class Fault : std::uint8_t {
   friction,      // GO outside of the cone; moved though it holds, held though it does not; a slip flag that is not so
   wrong_face,    // left an edge for the farther of two faces that pull
   uncertified,   // without friction: no local minimum of |x - HIP|, nor for any HIP within rounding, by exact rationals
-  stalled,       // work carried over that gets nowhere: the same HIP in tick after tick, and GO no nearer
+  stalled,       // work carried over that gets nowhere: the same HIP, and GO no nearer, in more ticks than pass all faces
   count
 };
 inline constexpr std::size_t kFaults = static_cast<std::size_t>(Fault::count);
@@ -52,7 +52,8 @@ inline constexpr double kMostRestless_eps = 16;
 inline constexpr double kMostPull_eps = 32;       // of a plane's distance, as the step bounds its own rounding
 inline constexpr double kMostFriction_eps = 64;   // times 1 + mu: as GO may be off its feature
 inline constexpr double kMostDescent_eps = 64;    // how far the way down may lead, as GO may be off its feature
-inline constexpr std::uint32_t kMostStalled = 4;  // ticks that carry work over and get nowhere
+inline constexpr std::uint32_t kSlow = 4;         // ticks that carry work over and bring GO no nearer: it may go round a fan
+inline constexpr std::uint32_t kFacesATick = 10;  // ... at least, of which each tick passes so many, and then rest
 inline constexpr double kShallow_eps = 4;         // of the size: a HIP so near to the surface may be taken for outside
 inline constexpr double kPerDeviation = 4;        // where merging moved faces: so many times the largest deviation as well
 inline constexpr double kAirPerDeviation = 16;    // ... and how far from its feature a hand that is let go would be in free air
@@ -86,6 +87,10 @@ class Judge {
     has_friction_ = params.mu_static > 0 || params.mu_dynamic > 0;
     params_ = params;
   }
+
+  // Whether GO came no nearer to a held HIP for some ticks, over work that is carried: it gets nowhere, or is round a fan in
+  // some ticks more, of which each brings it nearer by less than rounding. Hold the HIP on to see.
+  [[nodiscard]] bool is_slow() const { return stalled_ >= kSlow; }
 
   // One tick, which began with `before`. Returns a bit for each fault, 1 << fault, and counts them.
   std::uint32_t judge(const fdcg_contact& before, const Hip& hip_m, const fdcg_contact& after, const fdcg_result& result,

@@ -87,7 +87,7 @@ class Block {
     fdcg_contact contact = contact_;
     Verdicts verdicts;
     bool is_stalled = false;
-    for (int i = 0; i < kMostHeld && !is_stalled; ++i) {
+    for (int i = 0; (i < kMostHeld || judge.is_slow()) && !is_stalled; ++i) {
       const fdcg_contact before = contact;
       fdcg_result out;
       fdcg_step(&specimen_.graph(), &params_, &contact, hip_m.data(), &out);
