@@ -199,7 +199,7 @@ class NodeEntry {
       const bool is_below = start_side + thick < fall;  // at the way's end, or, along the node, all the way
       Real end = !is_below ? Real(1) : fall != 0 ? (start_side + thick) / fall : Real(-1);
       uint32_t side_left = FDCG_NONE;
-      if (!clip_to(node, 0, &begin, &end, &side_left)) return;
+      if (!clip_to(node, 0, &begin, &end, &side_left) || is_past_all_ends(node, point_at(fraction))) return;
       // Out of the slab over a convex side, in front at its end of the face across by more than that one's slab: no edge would
       // hold it (EDGE-1), and it has come below neither face.
       if (side_left != FDCG_NONE && graph_.connection(node.connection(side_left)).type() == FDCG_CONVEX &&
@@ -234,6 +234,14 @@ class NodeEntry {
     spend(work_left_, kBesideWork * (k + 1));
     if (k < node.side_count()) return Lies::beside;
     return is_inside ? Lies::over : Lies::unsure;
+  }
+
+  // A place inside of all sides is between the ends of one, the nearest; but of corners in one line, all the line is inside.
+  [[nodiscard, gnu::noinline, gnu::cold]] bool is_past_all_ends(NodeRef<Geometry> node, const Vec3<Real>& x) const {
+    for (uint32_t k = 0; k < node.side_count(); ++k) {
+      if (past_ends(node, k, x, Real(1)) <= slab_) return false;
+    }
+    return true;
   }
 
   // Whether a node's corners lie off its plane, or off a neighbour's: over that one a way in its slab may come below this one's
@@ -271,14 +279,7 @@ class NodeEntry {
   // begins over it.
   [[gnu::noinline, gnu::cold]] void try_other_wall(uint32_t n, NodeRef<Geometry> node) {
     if (left_.is_free() || !is_before_best(0, n)) return;
-    const auto& plane = node.plane();
-    // The offset is as good as the products at a corner that it makes up for; it may have cancelled to much less than them.
-    const Vec3<Real> corner = graph_.corner_point(node.corner(0)), normal = plane.normal;
-    const Plane<Real> uncancelled = {normal, norm1(Vec3<Real>{normal.x * corner.x, normal.y * corner.y, normal.z * corner.z})};
-    const auto is_behind = [&](Vec3<Real> x) {  // of a flat or a long body the rounding is much less than the bound
-      return plane.distance(x) < -own_plane_rounding(uncancelled, x);
-    };
-    if (is_behind(from_) && is_behind(stood_)) return;
+    if (is_clearly_behind(node, from_) && is_clearly_behind(node, stood_)) return;
     for (uint32_t k = 0; k < node.side_count(); ++k) {  // no further out than part_over allows, and not on its way out
       const auto& beside = node.voronoi_plane(k);
       const Real off = beside.distance(from_);
@@ -290,6 +291,14 @@ class NodeEntry {
     best_.node = n;
     best_.feature = {FDCG_FACE, n};
     is_over_.set(false);
+  }
+
+  // Whether a place is behind a node's plane by more than its own rounding, which of a flat or a long body is much less than
+  // the bound. The offset is as good as the products at a corner that it makes up for; it may have cancelled to much less.
+  [[nodiscard, gnu::noinline, gnu::cold]] bool is_clearly_behind(NodeRef<Geometry> node, const Vec3<Real>& x) const {
+    const Vec3<Real> corner = graph_.corner_point(node.corner(0)), normal = node.normal();
+    const Plane<Real> uncancelled = {normal, norm1(Vec3<Real>{normal.x * corner.x, normal.y * corner.y, normal.z * corner.z})};
+    return distance_from(node, x) < -own_plane_rounding(uncancelled, x);
   }
 
   // Whether the face or edge that the way leaves and the node are opposite each other, tested corner by corner: then the
@@ -308,7 +317,8 @@ class NodeEntry {
     if (left_.state != FDCG_EDGE) return false;  // at a corner its place is exact
     const ConnectionRef<Geometry> connection = graph_.connection(left_.index);
     for (uint32_t end = 0; end < 2; ++end) {
-      if (side_of_corner(node, connection.corner(end)) < 0) return false;
+      const uint32_t corner = connection.corner(end);
+      if (side_of_corner(node, corner) < 0 && is_clearly_behind(node, graph_.corner_point(corner))) return false;
     }
     const uint32_t count = connection.type() == FDCG_BOUNDARY ? 1 : 2;
     for (uint32_t k = 0; k < count; ++k) {

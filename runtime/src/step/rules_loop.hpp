@@ -27,7 +27,8 @@ class Trail {
       nearest2_ = now2;
       count_ = 0;
       has_come_nearer_ = true;
-      has_begun_again_ = false;
+      rounds_ = 0;
+      was_let_go_ = false;
     }
     return !may_visit(walk.active);
   }
@@ -42,8 +43,12 @@ class Trail {
     return true;
   }
   [[nodiscard]] bool has_come_nearer() const { return has_come_nearer_; }
-  // Whether faces have been visited, and the HIP is on the plane of each, but for rounding, and over none of them.
-  [[nodiscard, gnu::noinline, gnu::cold]] bool is_hip_beside_faces(const Walk<Geometry>& walk) const {
+  // A feature has let the god-object go.
+  void let_go() { was_let_go_ = true; }
+  // Whether the circle leads through free space, past faces, and the HIP is on the plane of each of them, but for rounding, and
+  // over none.
+  [[nodiscard, gnu::noinline, gnu::cold]] bool passes_hip_by(const Walk<Geometry>& walk) const {
+    if (!was_let_go_) return false;
     const Real most = side_rounding(walk.hip_bound, Real(0)) + Real(2 * walk.graph.max_deviation());
     bool is_beside = false;
     for (int i = 0; i < count_; ++i) {
@@ -62,14 +67,19 @@ class Trail {
     has_come_nearer_ = true;
   }
 
-  // Called where the step would rest (contact-model TICK-6). Walk::rounding_residual is not kept between ticks, so a rest must
-  // hold without it: it is set to zero and the step continues as the next tick would; once for each time that the god-object
-  // came nearer.
-  bool retry_without_residual(Walk<Geometry>& walk) {
-    if (has_begun_again_ || norm1(walk.rounding_residual) == 0) return false;
+  // Called where the step would rest (contact-model TICK-6). A rest must hold in the next tick, which knows nothing of the
+  // features visited here, nor of Walk::rounding_residual, which is not kept between ticks: so the step continues as that tick
+  // would, unless it already did so from here; a few times for each time that the god-object came nearer.
+  [[gnu::noinline, gnu::cold]] bool begins_again(Walk<Geometry>& walk) {
+    constexpr int kMostRounds = 4;
+    const bool is_fixed =
+        begun_at_ == key(walk.active) && norm1(walk.rounding_residual) == 0 && norm1(walk.god_object - begun_from_) == 0;
+    if (rounds_ == kMostRounds || (rounds_ > 0 && is_fixed)) return false;
+    ++rounds_;
+    begun_from_ = walk.god_object;
     walk.rounding_residual = {0, 0, 0};
-    has_begun_again_ = true;
-    visited_[0] = key(walk.active);
+    was_let_go_ = false;
+    begun_at_ = visited_[0] = key(walk.active);
     count_ = 1;
     return true;
   }
@@ -82,7 +92,10 @@ class Trail {
   Real nearest2_;
   int count_;
   bool has_come_nearer_ = false;
-  bool has_begun_again_ = false;
+  bool was_let_go_ = false;  // since it came nearer, or began again
+  int rounds_ = 0;           // begun again, since it came nearer; where and from which place last
+  uint64_t begun_at_ = 0;
+  Vec3<Real> begun_from_ = {0, 0, 0};
   uint64_t visited_[kCapacity];  // the first count_ are set
 };
 
@@ -153,7 +166,6 @@ Progress move_god_object(Walk<Geometry>& walk, Feature start, Vec3<Real> start_g
   }
   Trail<Geometry> trail(start, start_gap);
   if (!hopped.is_free()) trail.begin_nearer(hopped);
-  bool was_let_go = false;
   while (true) {
     const Feature at = walk.active;
     const Decision decision = decided != nullptr ? *decided : apply_rule(walk);
@@ -167,7 +179,7 @@ Progress move_god_object(Walk<Geometry>& walk, Feature start, Vec3<Real> start_g
     if (FDCG_MUTANT("walk-cut") && progress.transitions > 3) return progress;
     if (walk.active.state == FDCG_FACE) walk.graph.prefetch_around(walk.graph.node(walk.active.index));
     if (walk.active.is_free()) {
-      was_let_go = true;
+      trail.let_go();
       if (trail.has_come_nearer()) space->inner->sweep.stalled_sweeps = 0;
       const Vec3<Real> stood = walk.god_object;
       step_clear_of(walk, at);
@@ -175,9 +187,9 @@ Progress move_god_object(Walk<Geometry>& walk, Feature start, Vec3<Real> start_g
       if (walk.active.is_free()) return progress;
       ++progress.transitions;
     }
-    if (!FDCG_MUTANT("met-again") && trail.has_met_again(walk) && !trail.retry_without_residual(walk) &&
+    if (!FDCG_MUTANT("met-again") && trail.has_met_again(walk) && !trail.begins_again(walk) &&
         !goes_on_at_corner(walk, &trail)) {
-      if (was_let_go && trail.is_hip_beside_faces(walk)) {
+      if (trail.passes_hip_by(walk)) {
         space->inner->sweep.stalled_sweeps = 0;
         walk.place(walk.hip, kFree);
         walk.active = kFree;
