@@ -25,10 +25,10 @@ set(fdcg_test_level $<$<CONFIG:Release>:-O0>)
 set(fdcg_computing_level $<$<CONFIG:Release>:-O1>)
 
 # fdcg_test(NAME TIER tier SOURCES ... LIBRARIES ... [INCLUDES folder...] [DEFINITIONS ...] [TIMEOUT seconds] [COMPUTES]
-# [OWN_HEADERS]): one Catch2 program, each test case a CTest test. COMPUTES: it is to be optimised. OWN_HEADERS: so too, and its
-# flags differ from the others', so that it cannot share their precompiled header.
+# [OWN_HEADERS] [RUN_ALONE]): one Catch2 program, each test case a CTest test. COMPUTES: it is to be optimised. OWN_HEADERS: so
+# too, and its flags differ from the others', so that it cannot share their precompiled header. RUN_ALONE: beside no other test.
 function(fdcg_test name)
-  cmake_parse_arguments(arg "COMPUTES;OWN_HEADERS" "TIER;TIMEOUT" "SOURCES;LIBRARIES;INCLUDES;DEFINITIONS" ${ARGN})
+  cmake_parse_arguments(arg "COMPUTES;OWN_HEADERS;RUN_ALONE" "TIER;TIMEOUT" "SOURCES;LIBRARIES;INCLUDES;DEFINITIONS" ${ARGN})
   if(NOT arg_TIER)
     message(FATAL_ERROR "fdcg: test ${name} has no tier; the tiers are ${fdcg_tiers}")
   endif()
@@ -49,7 +49,8 @@ function(fdcg_test name)
   endif()
   fdcg_in_tier(${arg_TIER} ${target})
   catch_discover_tests(${target} TEST_PREFIX "${name}: " DISCOVERY_MODE PRE_TEST
-                       PROPERTIES TIMEOUT ${arg_TIMEOUT} LABELS ${arg_TIER} SKIP_REGULAR_EXPRESSION "skipped: ")
+                       PROPERTIES TIMEOUT ${arg_TIMEOUT} LABELS ${arg_TIER} SKIP_REGULAR_EXPRESSION "skipped: "
+                                  RUN_SERIAL ${arg_RUN_ALONE})
 endfunction()
 
 # fdcg_script_test(NAME TIER tier COMMAND ... [NEEDS target...] [ENVIRONMENT ...] [TIMEOUT seconds] [RUN_ALONE] [PROPERTIES ...]):
