@@ -29,6 +29,10 @@ inline Real own_plane_rounding(const Plane& plane, Vec3<Real> x) {
   return 8 * RealLimits<Real>::kEpsilon * (norm1(terms) + absolute(plane.offset));
 }
 
+// LEAVE-3: of it the rounding of a mesh's corners alone, which puts one behind a plane that it would be in.
+template <class Real>
+inline constexpr Real kCornersShare = Real(1) / 8;
+
 // FACE-5, FACE-6: a place so near to a plane is on it, where both were computed: the plane's offset may have cancelled
 // to 0, and then is good to a unit of the extent's last place, not of its own.
 template <class Real>

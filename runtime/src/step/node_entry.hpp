@@ -279,7 +279,7 @@ class NodeEntry {
   // begins over it.
   [[gnu::noinline, gnu::cold]] void try_other_wall(uint32_t n, NodeRef<Geometry> node) {
     if (left_.is_free() || !is_before_best(0, n)) return;
-    if (is_clearly_behind(node, from_) && is_clearly_behind(node, stood_)) return;
+    if (is_clearly_behind(node, from_, Real(1)) && is_clearly_behind(node, stood_, Real(1))) return;
     for (uint32_t k = 0; k < node.side_count(); ++k) {  // no further out than part_over allows, and not on its way out
       const auto& beside = node.voronoi_plane(k);
       const Real off = beside.distance(from_);
@@ -293,12 +293,13 @@ class NodeEntry {
     is_over_.set(false);
   }
 
-  // Whether a place is behind a node's plane by more than its own rounding, which of a flat or a long body is much less than
-  // the bound. The offset is as good as the products at a corner that it makes up for; it may have cancelled to much less.
-  [[nodiscard, gnu::noinline, gnu::cold]] bool is_clearly_behind(NodeRef<Geometry> node, const Vec3<Real>& x) const {
+  // Whether a place is behind a node's plane by more than a share of that plane's own rounding, which of a flat or a long body
+  // is much less than the bound. The offset is as good as the products at a corner that it makes up for; it may have cancelled.
+  [[nodiscard, gnu::noinline, gnu::cold]] bool is_clearly_behind(NodeRef<Geometry> node, const Vec3<Real>& x,
+                                                                 Real share) const {
     const Vec3<Real> corner = graph_.corner_point(node.corner(0)), normal = node.normal();
     const Plane<Real> uncancelled = {normal, norm1(Vec3<Real>{normal.x * corner.x, normal.y * corner.y, normal.z * corner.z})};
-    return distance_from(node, x) < -own_plane_rounding(uncancelled, x);
+    return distance_from(node, x) < -share * own_plane_rounding(uncancelled, x);
   }
 
   // Whether the face or edge that the way leaves and the node are opposite each other, tested corner by corner: then the
@@ -318,7 +319,8 @@ class NodeEntry {
     const ConnectionRef<Geometry> connection = graph_.connection(left_.index);
     for (uint32_t end = 0; end < 2; ++end) {
       const uint32_t corner = connection.corner(end);
-      if (side_of_corner(node, corner) < 0 && is_clearly_behind(node, graph_.corner_point(corner))) return false;
+      if (side_of_corner(node, corner) < 0 && is_clearly_behind(node, graph_.corner_point(corner), kCornersShare<Real>))
+        return false;
     }
     const uint32_t count = connection.type() == FDCG_BOUNDARY ? 1 : 2;
     for (uint32_t k = 0; k < count; ++k) {

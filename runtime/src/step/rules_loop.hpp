@@ -131,10 +131,12 @@ template <class Geometry, class Real = typename Geometry::Real>
 [[gnu::noinline, gnu::cold]] bool goes_on_at_corner(Walk<Geometry>& walk, Trail<Geometry>* trail) {
   if (walk.rim == FDCG_NONE || FDCG_MUTANT("circle-at-corner")) return false;
   Feature next = {FDCG_EDGE, walk.rim};
-  if (walk.seat == next) {
-    EdgeLine<Real> line(walk.graph, walk.rim);
-    line.end_tolerance = corner_rounding(walk.hip_bound, Real(2 * walk.graph.max_deviation()));
-    const Real u = line.parameter(walk.god_object);
+  EdgeLine<Real> line(walk.graph, walk.rim);
+  line.end_tolerance = corner_rounding(walk.hip_bound, Real(2 * walk.graph.max_deviation()));
+  const Real u = line.parameter(walk.god_object);
+  const bool is_met_beside =
+      walk.seat.is_free() && norm(line.start + line.direction * u - walk.god_object) <= line.end_tolerance;
+  if (walk.seat == next || is_met_beside) {
     if (!is_at_end(line, u)) return false;
     place_on_edge(walk, walk.rim, line, u);
     next = walk.seat;
