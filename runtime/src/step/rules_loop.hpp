@@ -70,16 +70,14 @@ class Trail {
   // Called where the step would rest (contact-model TICK-6). A rest must hold in the next tick, which knows nothing of the
   // features visited here, nor of Walk::rounding_residual, which is not kept between ticks: so the step continues as that tick
   // would, unless it already did so from here; a few times for each time that the god-object came nearer.
-  [[gnu::noinline, gnu::cold]] bool begins_again(Walk<Geometry>& walk) {
+  bool begins_again(Walk<Geometry>& walk) {
     constexpr int kMostRounds = 4;
-    const bool is_fixed =
-        begun_at_ == key(walk.active) && norm1(walk.rounding_residual) == 0 && norm1(walk.god_object - begun_from_) == 0;
-    if (rounds_ == kMostRounds || (rounds_ > 0 && is_fixed)) return false;
+    if (rounds_ == kMostRounds || norm1(walk.god_object - begun_from_) + norm1(walk.rounding_residual) == 0) return false;
     ++rounds_;
     begun_from_ = walk.god_object;
     walk.rounding_residual = {0, 0, 0};
     was_let_go_ = false;
-    begun_at_ = visited_[0] = key(walk.active);
+    visited_[0] = key(walk.active);
     count_ = 1;
     return true;
   }
@@ -93,9 +91,8 @@ class Trail {
   int count_;
   bool has_come_nearer_ = false;
   bool was_let_go_ = false;  // since it came nearer, or began again
-  int rounds_ = 0;           // begun again, since it came nearer; where and from which place last
-  uint64_t begun_at_ = 0;
-  Vec3<Real> begun_from_ = {0, 0, 0};
+  int rounds_ = 0;           // begun again, since it came nearer; and from which place last
+  Vec3<Real> begun_from_ = {RealLimits<Real>::kFar, 0, 0};
   uint64_t visited_[kCapacity];  // the first count_ are set
 };
 
@@ -135,7 +132,7 @@ template <class Geometry, class Real = typename Geometry::Real>
   line.end_tolerance = corner_rounding(walk.hip_bound, Real(2 * walk.graph.max_deviation()));
   const Real u = line.parameter(walk.god_object);
   const bool is_met_beside =
-      walk.seat.is_free() && norm(line.start + line.direction * u - walk.god_object) <= line.end_tolerance;
+      walk.seat.is_free() && norm1(line.start + line.direction * u - walk.god_object) <= line.end_tolerance;
   if (walk.seat == next || is_met_beside) {
     if (!is_at_end(line, u)) return false;
     place_on_edge(walk, walk.rim, line, u);
