@@ -186,8 +186,8 @@ Progress move_god_object(Walk<Geometry>& walk, Feature start, Vec3<Real> start_g
       if (walk.active.is_free()) return progress;
       ++progress.transitions;
     }
-    if (!FDCG_MUTANT("met-again") && trail.has_met_again(walk) && !trail.begins_again(walk) &&
-        !goes_on_at_corner(walk, &trail)) {
+    if (!FDCG_MUTANT("met-again") && trail.has_met_again(walk) && !goes_on_at_corner(walk, &trail) &&
+        !trail.begins_again(walk)) {
       if (trail.passes_hip_by(walk)) {
         space->inner->sweep.stalled_sweeps = 0;
         walk.place(walk.hip, kFree);
