@@ -45,11 +45,9 @@ class Trail {
   [[nodiscard]] bool has_come_nearer() const { return has_come_nearer_; }
   // A feature has let the god-object go.
   void let_go() { was_let_go_ = true; }
-  // Whether the circle leads through free space, past faces, and the HIP is on the plane of each of them, but for rounding, and
-  // over none.
+  // Whether the circle leads through free space, past faces, and the HIP is clearly over none of them.
   [[nodiscard, gnu::noinline, gnu::cold]] bool passes_hip_by(const Walk<Geometry>& walk) const {
     if (!was_let_go_) return false;
-    const Real most = side_rounding(walk.hip_bound, Real(0)) + Real(2 * walk.graph.max_deviation());
     bool is_beside = false;
     for (int i = 0; i < count_; ++i) {
       if (visited_[i] >> 32 != FDCG_FACE) continue;
@@ -57,7 +55,7 @@ class Trail {
       is_beside = false;
       for (uint32_t k = 0; k < node.side_count(); ++k)
         is_beside = is_beside || distance_beyond(node, k, walk.hip) > walk.hip_bound;
-      if (!is_beside || absolute(distance_from(node, walk.hip)) > most) return false;
+      if (!is_beside) return false;
     }
     return is_beside;
   }
