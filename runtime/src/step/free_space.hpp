@@ -69,7 +69,7 @@ struct FreeSpace {
   ContactInternals* inner;
   bool looks_for_balls;
   uint32_t work_left;
-  const double* last_hip;
+  const fdcg_contact* begun;  // with HIP and god-object as the tick found them
 };
 
 // Whether a ball that no faces touch but a few holds the whole way; it is kept. Where there was none, or none that would hold

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The HIP as the step takes it: in the graph's frame, in its numbers (contact-model TICK-2, TICK-4).
+// The HIP as the step takes it: in the graph's frame, in its numbers (contact-model TICK-2, TICK-4); and places of a contact.
 #pragma once
 
 #include "base/mutation.hpp"
@@ -51,6 +51,12 @@ inline bool to_local(const fdcg_header& header, const double hip_object_m[3], do
   if (has_below(least, local)) local = {zero_below(least, local.x), zero_below(least, local.y), zero_below(least, local.z)};
   *hip = local;
   return true;
+}
+
+// A place of a contact, which is kept in double whatever the graph's numbers are.
+template <class Real>
+inline Vec3<Real> narrow(const double (&a)[3]) {
+  return {static_cast<Real>(a[0]), static_cast<Real>(a[1]), static_cast<Real>(a[2])};
 }
 
 }  // namespace

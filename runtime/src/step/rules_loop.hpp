@@ -7,6 +7,7 @@
 #include "step/face.hpp"
 #include "step/free_space.hpp"
 #include "step/leave.hpp"
+#include "step/local_hip.hpp"
 
 namespace fdcg {
 namespace {
@@ -201,13 +202,12 @@ Progress move_god_object(Walk<Geometry>& walk, Feature start, Vec3<Real> start_g
       // No nearer: where the tick began the next one would do the same; elsewhere, with HIP and god-object where they were, a
       // circle may take several ticks (contact-model TICK-6).
       constexpr uint16_t kMostStalledTicks = 3;
-      const Vec3<Real> gap = walk.gap();
-      const double* const last = space->last_hip;
-      const bool has_moved =
-          last[0] != walk.hip.x || last[1] != walk.hip.y || last[2] != walk.hip.z || norm1(gap - start_gap) > 0;
+      const Vec3<Real> gap = walk.gap(), begun = narrow<Real>(space->begun->god_object) - walk.hip;  // before any hops
+      const double* const last = space->begun->hip;
+      const bool has_moved = last[0] != walk.hip.x || last[1] != walk.hip.y || last[2] != walk.hip.z || norm1(gap - begun) > 0;
       uint16_t* const stalled = &space->inner->sweep.stalled_ticks;
       const bool is_at_start = walk.active == start;
-      if (dot(gap, gap) < dot(start_gap, start_gap) || (has_moved && !is_at_start)) {
+      if (dot(gap, gap) < dot(begun, begun) || (has_moved && !is_at_start)) {
         *stalled = 0;
       } else if (*stalled < kMostStalledTicks) {
         *stalled = static_cast<uint16_t>(is_at_start ? kMostStalledTicks : *stalled + 1);

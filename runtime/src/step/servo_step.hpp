@@ -41,11 +41,6 @@ namespace {
   return feature.is_free() || (feature.state <= FDCG_VERTEX && feature.index < count[feature.state]);
 }
 
-template <class Real>
-inline Vec3<Real> narrow(const double (&a)[3]) {
-  return {static_cast<Real>(a[0]), static_cast<Real>(a[1]), static_cast<Real>(a[2])};
-}
-
 inline void write_position(const fdcg_header& header, const fdcg_contact& contact, fdcg_result* result) {
   store((vec(contact.god_object) + vec(header.origin)) * header.metres_per_unit, result->god_object_m);
   result->state = contact.state;
@@ -138,7 +133,7 @@ template <class Geometry, class Real = typename Geometry::Real>
     walk.work_left = kRuleWork;
   }
   ContactInternals& inner = internals_of(*contact);
-  FreeSpace space = {&inner, (params.disabled_optimizations & FDCG_STEP_OPT_CLEAR_BALL) == 0, kSweepWork, contact->hip};
+  FreeSpace space = {&inner, (params.disabled_optimizations & FDCG_STEP_OPT_CLEAR_BALL) == 0, kSweepWork, contact};
   const Progress progress =
       move_god_object(walk, start, start_gap, hopped, move != nullptr || asks_face ? &decided : nullptr, &space);
   // On a surface it is within the object. Planes of a file that is SAFE, and not FULL, may lie up to four extents away from
