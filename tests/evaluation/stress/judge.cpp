@@ -339,12 +339,13 @@ void Judge::look_at_way(Tick& tick) {
   if (way.is_through && !is_stopped) tick.faults |= bit(Fault::unseen);
   if (!is_stopped) return;
   const bool is_held = tick.after.state != FDCG_FREE;
-  // As a HIP inside may be taken for outside: held by less than rounding could tell.
-  if (is_held && distance(tick.god_object, tick.hip) <= kShallow_eps * epsilon_ * specimen_.inside->size()) return;
-  if (is_held && way.touches && !way.is_through && specimen_.inside->grazes(from, tick.hip))
+  const auto may_be_inside = [&] {  // as one inside may be taken for outside
+    return specimen_.inside->distance_to_surface(tick.hip) <= kShallow_eps * epsilon_ * specimen_.inside->size();
+  };
+  if (is_held && way.touches && !way.is_through && specimen_.inside->grazes(from, tick.hip) && !may_be_inside())
     tick.faults |= bit(Fault::thin_air);
   if (!tick.is_way_clear) return;
-  if (is_held || !passes_busy_corner(from, tick.hip)) tick.faults |= bit(Fault::thin_air);
+  if (is_held ? !may_be_inside() : !passes_busy_corner(from, tick.hip)) tick.faults |= bit(Fault::thin_air);
 }
 
 // A busy corner that a way passes within rounding may be met, to be let go in the same tick (contact-model FREE-8, CORNER-4).

@@ -20,21 +20,21 @@ enum class Fault : std::uint8_t {
   growth,        // |GO - HIP| grew by more than 16 eps of the scale; where a merged face is met, that beyond its slab
   push_through,  // Free and, after having been outside or held, inside by more than 4 eps of the size
   unseen,        // a way through the surface that met nothing
-  thin_air,     // a contact, by more than 4 eps of the size, though the way met nothing; or one that was let go again, but at a
-                // busy corner (FREE-8)
-  off_surface,  // GO off the planes of its feature, or beyond its rim, by more than 64 eps of the scale
-  pull,         // the HIP is in front of what is said to hold it: the force pulls inwards
-  restless,     // the same HIP again: GO came nearer by more than 16 eps of the scale, or moved by more than such a change of
-                // its distance allows, or contact was lost or found
-  descent,      // without friction: at rest though a face or an edge there, or the free way itself, leads nearer to the HIP
-  free_air,     // ... and the HIP is outside of the solid
-  no_force,     // inside by more than 4 eps of the size, after having been outside or held, and no force
-  report,       // result and contact say different things, or the contact's HIP is not this tick's
-  force,        // not k (GO - HIP), or a force in free space
-  friction,     // GO outside of the cone; moved though it holds, held though it does not; a slip flag that is not so
-  wrong_face,   // left an edge for the farther of two faces that pull
-  uncertified,  // without friction: no local minimum of |x - HIP|, nor for any HIP within rounding, by exact rationals
-  stalled,      // work carried over that gets nowhere: the same HIP, and GO no nearer, in more ticks than pass all faces
+  thin_air,      // a contact though the way met nothing, and the HIP is outside by more than 4 eps of the size; or one that was
+                 // let go again, but at a busy corner (FREE-8)
+  off_surface,   // GO off the planes of its feature, or beyond its rim, by more than 64 eps of the scale
+  pull,          // the HIP is in front of what is said to hold it: the force pulls inwards
+  restless,      // the same HIP again: GO came nearer by more than 16 eps of the scale, or moved by more than such a change of
+                 // its distance allows, or contact was lost or found
+  descent,       // without friction: at rest though a face or an edge there, or the free way itself, leads nearer to the HIP
+  free_air,      // ... and the HIP is outside of the solid
+  no_force,      // inside by more than 4 eps of the size, after having been outside or held, and no force
+  report,        // result and contact say different things, or the contact's HIP is not this tick's
+  force,         // not k (GO - HIP), or a force in free space
+  friction,      // GO outside of the cone; moved though it holds, held though it does not; a slip flag that is not so
+  wrong_face,    // left an edge for the farther of two faces that pull
+  uncertified,   // without friction: no local minimum of |x - HIP|, nor for any HIP within rounding, by exact rationals
+  stalled,       // work carried over that gets nowhere: the same HIP, and GO no nearer, in more ticks than pass all faces
   count
 };
 inline constexpr std::size_t kFaults = static_cast<std::size_t>(Fault::count);
