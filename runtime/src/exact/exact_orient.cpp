@@ -45,7 +45,7 @@ inline Split operator-(Split a, Split b) {
   return a + Split{-b.value, -b.rest};
 }
 
-// A double as mantissa * 2^exponent, the mantissa odd or zero.
+// A double as mantissa * 2^exponent, the mantissa odd, or zero: then the exponent is not set.
 struct Parts {
   uint64_t mantissa;
   int exponent;

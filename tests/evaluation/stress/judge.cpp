@@ -165,7 +165,7 @@ void Judge::look_at_carried(Tick& tick) {
   const bool gets_nowhere =
       is_held && long_length(tick.god_object, tick.hip) >= long_length(hip_of(tick.before.god_object), tick.hip);
   stalled_ = gets_nowhere ? stalled_ + 1 : 0;
-  if (stalled_ >= kSlow + specimen_.nodes.size() / kFacesATick) tick.faults |= bit(Fault::stalled);
+  if (stalled_ >= kSlowTicks + specimen_.nodes.size() / kFacesATick) tick.faults |= bit(Fault::stalled);
 }
 
 void Judge::look_at_feature(Tick& tick, Verdicts& v) const {

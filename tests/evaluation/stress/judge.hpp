@@ -53,8 +53,8 @@ inline constexpr double kMostRestless_eps = 16;
 inline constexpr double kMostPull_eps = 32;       // of a plane's distance, as the step bounds its own rounding
 inline constexpr double kMostFriction_eps = 64;   // times 1 + mu: as GO may be off its feature
 inline constexpr double kMostDescent_eps = 64;    // how far the way down may lead, as GO may be off its feature
-inline constexpr std::uint32_t kSlow = 4;         // ticks that carry work over and bring GO no nearer: it may go round a fan
-inline constexpr std::uint32_t kFacesATick = 10;  // ... at least, of which each tick passes so many, and then rest
+inline constexpr std::uint32_t kSlowTicks = 4;    // that carry work over and bring GO no nearer: it may go round a fan
+inline constexpr std::uint32_t kFacesATick = 10;  // that such a tick passes, at least
 inline constexpr double kShallow_eps = 4;   // of the size: a HIP so near to the surface may be taken for outside, or for inside
 inline constexpr double kPerDeviation = 4;  // where merging moved faces: so many times the largest deviation as well
 inline constexpr double kAirPerDeviation = 16;  // ... and how far from its feature a hand that is let go would be in free air
@@ -89,9 +89,9 @@ class Judge {
     params_ = params;
   }
 
-  // Whether GO came no nearer to a held HIP for some ticks, over work that is carried: it gets nowhere, or is round a fan in
-  // some ticks more, of which each brings it nearer by less than rounding. Hold the HIP on to see.
-  [[nodiscard]] bool is_slow() const { return stalled_ >= kSlow; }
+  // Whether GO has come no nearer to a held HIP for some ticks that carry work over. Either it goes in a circle, or round a fan
+  // of thousands of faces, nearer by less than rounding in each tick: holding the HIP for longer tells.
+  [[nodiscard]] bool is_slow() const { return stalled_ >= kSlowTicks; }
 
   // One tick, which began with `before`. Returns a bit for each fault, 1 << fault, and counts them.
   std::uint32_t judge(const fdcg_contact& before, const Hip& hip_m, const fdcg_contact& after, const fdcg_result& result,
