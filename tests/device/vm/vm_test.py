@@ -99,10 +99,19 @@ class FaultsUhid(VmCase):
         self.assert_passes(len(REPORTS + ENDS), self.boot(f"faults only={STRIKES}"))
 
 
-class FaultsUsb(VmCase):
-    def test_each_fault_twenty_times(self):
-        console = self.boot(f"faults way=usb only={STRIKES}", "faults way=usb backend=libusb only=unplugged,no-output")
-        self.assert_passes(len(REPORTS + ENDS) + 2, console)
+class ReportsUsb(VmCase):
+    def test_each_fault_of_a_report_twenty_times(self):
+        self.assert_passes(len(REPORTS), self.boot(f"faults way=usb only={','.join(REPORTS)}"))
+
+
+class EndsUsb(VmCase):
+    def test_each_end_twenty_times(self):
+        self.assert_passes(len(ENDS), self.boot(f"faults way=usb only={','.join(ENDS)}"))
+
+
+class EndsLibusb(VmCase):
+    def test_unplugged_and_no_output_twenty_times(self):
+        self.assert_passes(2, self.boot("faults way=usb backend=libusb only=unplugged,no-output"))
 
 
 class LateUhid(VmCase):
