@@ -108,14 +108,15 @@ FDCG_HOT FaceGlance<Real> glance_on_face(NodeRef<Geometry> node, Laws& friction,
   const Real depth = -side;
   const Slip<Real> slip = friction.slip(god_object, dot(off, off), depth);
   if (slip.is_rest) return {Kind::rests, 0, god_object};
-  Vec3<Real> target = hip + normal * depth;          // the surface point
+  Vec3<Real> way = normal * depth;                   // from the HIP to the target: so far to the surface point
   if (slip.gap > 0 || FDCG_MUTANT("slides-half")) {  // else it does not wait for where the god-object is
     const Vec3<Real> offset = reach - normal * dot(normal, reach);
     const Real reach2 = dot(offset, offset);
     const Real shrink = slip.gap > 0 && reach2 > 0 ? slip.gap / root(reach2) : Real(0);
     const Real part = FDCG_MUTANT("slides-half") ? (1 + shrink) / 2 : FDCG_MUTANT("slides-past") ? -shrink : shrink;
-    target = target + offset * part;
+    way = way + offset * part;
   }
+  const Vec3<Real> target = hip + way;  // contact-model FRIC-4: rounded once
   const uint32_t k = FDCG_MUTANT("rim-unseen") ? node.side_count() : first_near_side<kIsPlain>(node, target, bound);
   return {k < node.side_count() ? Kind::nears : Kind::slides, k, by_parts(target)};
 }

@@ -46,9 +46,10 @@ class Trail {
   [[nodiscard]] bool has_come_nearer() const { return has_come_nearer_; }
   // A feature has let the god-object go.
   void let_go() { was_let_go_ = true; }
-  // Whether the circle leads through free space, past faces, and the HIP is clearly over none of them.
+  // Whether the circle leads through free space, past faces, and the HIP is clearly over none of them. Faces that move may have
+  // been squeezed to lines, which are under nothing.
   [[nodiscard, gnu::noinline, gnu::cold]] bool passes_hip_by(const Walk<Geometry>& walk) const {
-    if (!was_let_go_) return false;
+    if (!Geometry::kKeepsDirections || !was_let_go_) return false;
     bool is_beside = false;
     for (int i = 0; i < count_; ++i) {
       if (visited_[i] >> 32 != FDCG_FACE) continue;
