@@ -180,6 +180,14 @@ template <class Geometry>
   return in_front == all ? Beginning::outside : Beginning::not_told;
 }
 
+// A face squeezed to a line has a neighbour's plane: at an edge of it, two faces are one.
+template <class Geometry>
+[[nodiscard]] inline bool has_two_faces(const GraphView<Geometry>& graph, const FanEntry& entry) {
+  if constexpr (Geometry::kKeepsDirections) return true;
+  const ConnectionRef<Geometry> connection = graph.connection(entry.connection);
+  return connection.type() == FDCG_BOUNDARY || (graph.has_area(connection.node(0)) && graph.has_area(connection.node(1)));
+}
+
 // contact-model CORNER-4. Exact, but at corners of faces that lie off their planes. Not told: of an open corner, which has no
 // inside, and of a busy one where hundreds of faces lie in one plane with the way.
 template <class Geometry, class Real = typename Geometry::Real>
@@ -206,7 +214,7 @@ template <class Geometry, class Real = typename Geometry::Real>
   } else {
     graph.for_each_in_fan(corner, [&](const FanEntry& entry) {
       const Real along = dot(t, graph.direction(entry.connection));
-      choose(entry, entry.end == 0 ? along : -along);
+      choose(entry, !has_two_faces(graph, entry) ? -RealLimits<Real>::kFar : entry.end == 0 ? along : -along);
     });
   }
   // A file that is SAFE, and not FULL, may have a border at a corner that does not say so.

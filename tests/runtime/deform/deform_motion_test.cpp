@@ -304,7 +304,7 @@ TEST_CASE("a triangle squeezed onto its side under a still finger lets nothing t
 TEST_CASE("triangles squeezed to lines and points let nothing through, and come back") {
   for (const bake::Precision precision : {bake::Precision::f64, bake::Precision::f32}) {
     const double epsilon = precision == bake::Precision::f64 ? 2.2204460492503131e-16 : 1.1920929e-7;
-    const std::uint64_t steps = steps_or(40000);
+    const std::uint64_t steps = steps_or(120000);
     Sheet sheet(32, precision);  // places are dyadic: what is squeezed is exactly so
     const double extent = sheet.updated_extent();
     Random random(23);
