@@ -68,7 +68,8 @@ inline Real end_rounding(const Vec3<Real>& start, Real length) {
   return 8 * RealLimits<Real>::kEpsilon * (norm1(start) + length);
 }
 
-// TICK-5: a god-object that goes in a circle this near to a corner is on it. `bound`: plane_rounding_bound.
+// TICK-5, EDGE-8: a god-object that goes in a circle, or is let go, this near to a corner is on it. `bound`:
+// plane_rounding_bound.
 template <class Real>
 inline Real corner_rounding(Real bound, Real deviation) {
   return 2 * (bound + deviation);

@@ -119,6 +119,21 @@ template <class Geometry, class Real = typename Geometry::Real>
   return is_over && lets_go(walk.graph, walk.hip_bound, connection.type(), s);
 }
 
+// Whether the god-object is at an end of an edge but for rounding (contact-model TICK-5, EDGE-8). It is then placed on the
+// corner there, as by FACE-6.
+template <class Geometry, class Real = typename Geometry::Real>
+[[gnu::noinline, gnu::cold]] bool goes_to_corner(Walk<Geometry>& walk, uint32_t edge) {
+  const Real near = corner_rounding(walk.hip_bound, Real(2 * walk.graph.max_deviation()));
+  for (uint32_t end = 0; end < 2; ++end) {
+    const uint32_t corner = walk.graph.connection(edge).corner(end);
+    if (norm1(walk.graph.corner_point(corner) - walk.god_object) > near) continue;
+    walk.seat = {FDCG_VERTEX, corner};
+    if (!snapping_increases_distance(walk, corner)) walk.place(walk.graph.corner_point(corner), walk.seat);
+    return true;
+  }
+  return false;
+}
+
 // contact-model TICK-5: rounding hands the god-object around a corner. The corner, whose rule is exact, decides if it has not
 // been asked; whatever the way here was, or the next tick, which knows nothing of it, would decide otherwise. If it has, and
 // a face there has sent the god-object back, the edge is asked by which the face did so: at the tip of a long body the corner's
@@ -127,22 +142,12 @@ template <class Geometry, class Real = typename Geometry::Real>
 template <class Geometry, class Real = typename Geometry::Real>
 [[gnu::noinline, gnu::cold]] bool goes_on_at_corner(Walk<Geometry>& walk, Trail<Geometry>* trail) {
   if (walk.rim == FDCG_NONE || FDCG_MUTANT("circle-at-corner")) return false;
-  Feature next = {FDCG_EDGE, walk.rim};
-  EdgeLine<Real> line(walk.graph, walk.rim);
-  line.end_tolerance = corner_rounding(walk.hip_bound, Real(2 * walk.graph.max_deviation()));
-  const Real u = line.parameter(walk.god_object);
-  const bool is_met_beside =
-      walk.seat.is_free() && norm1(line.start + line.direction * u - walk.god_object) <= line.end_tolerance;
-  if (walk.seat == next || is_met_beside) {
-    if (!is_at_end(line, u)) return false;
-    place_on_edge(walk, walk.rim, line, u);
-    next = walk.seat;
-  } else {
-    const ConnectionRef<Geometry> connection = walk.graph.connection(walk.rim);
-    const bool ends_there = connection.corner(0) == walk.seat.index || connection.corner(1) == walk.seat.index;
-    if (walk.seat.state != FDCG_VERTEX || !ends_there) return false;
+  if (!goes_to_corner(walk, walk.rim)) return false;
+  Feature next = walk.seat;
+  if (!trail->may_visit(next)) {
+    next = {FDCG_EDGE, walk.rim};
+    if (!trail->may_visit(next) || lets_go_over_face(walk)) return false;
   }
-  if (!trail->may_visit(next) || (next.state == FDCG_EDGE && lets_go_over_face(walk))) return false;
   walk.active = next;
   return true;
 }
@@ -179,6 +184,9 @@ Progress move_god_object(Walk<Geometry>& walk, Feature start, Vec3<Real> start_g
     if (walk.active.state == FDCG_FACE) walk.graph.prefetch_around(walk.graph.node(walk.active.index));
     if (walk.active.is_free()) {
       trail.let_go();
+      if (at.state == FDCG_EDGE && goes_to_corner(walk, at.index)) walk.active = walk.seat;
+    }
+    if (walk.active.is_free()) {
       if (trail.has_come_nearer()) space->inner->sweep.stalled_sweeps = 0;
       const Vec3<Real> stood = walk.god_object;
       step_clear_of(walk, at);

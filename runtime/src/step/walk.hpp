@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The state of one contact within one step, and the moves that the rules share. face.hpp, edge.hpp, corner.hpp hold the rules
-// contact-model FACE-1 to FACE-7, EDGE-1 to EDGE-7, CORNER-1 to CORNER-7, free_space.hpp and sweep.hpp those of free space;
+// contact-model FACE-1 to FACE-7, EDGE-1 to EDGE-8, CORNER-1 to CORNER-7, free_space.hpp and sweep.hpp those of free space;
 // rules_loop.hpp drives them.
 #pragma once
 
