@@ -87,7 +87,7 @@ class TextSize(WeightCase):
             self.weigh("cortex-m7 -Os, f32" + what, "arm-none-eabi-size", library, **weights)
 
 
-class Parts(WeightCase):
+class PartsCase(WeightCase):
     """A program links the parts of the runtime that it uses and no others, with no help from the linker's options."""
 
     # Bytes of code and constants, the start of the program and the C library included, the graph's own not.
@@ -147,14 +147,11 @@ class Parts(WeightCase):
             self.assert_links_alone("nm", program, link_map)
         return self.text("size", program, name)
 
+
+class Parts(PartsCase):
     def test_x86_64_a_sphere_and_an_effect(self):
         for name, bar in self.X86.items():
             self.told(f"x86-64: {name}", self.native(name, self.library("both"), self.embedded()), bar, bar)
-
-    def test_x86_64_a_graph(self):
-        for program, name, options, bar, limit in self.X86_GRAPHS:
-            text = self.native(program, self.library(name, *options), self.embedded(name[:3] if name.startswith("f") else "f32"))
-            self.told(f"x86-64, {name}: {program}", text, bar, limit)
 
     def test_x86_64_link_time_optimisation(self):
         library = self.library("lto", *self.F64, *self.LEAN, *LTO)
@@ -205,6 +202,15 @@ int main(void) {
             objects = self.run_program("nm", "--defined-only", program).stdout
             self.assertEqual(name != "plain", b"step_torus" in objects)
 
+
+class PartsOfGraphs(PartsCase):
+    def test_x86_64_a_graph(self):
+        for program, name, options, bar, limit in self.X86_GRAPHS:
+            text = self.native(program, self.library(name, *options), self.embedded(name[:3] if name.startswith("f") else "f32"))
+            self.told(f"x86-64, {name}: {program}", text, bar, limit)
+
+
+class PartsOnCortexM7(PartsCase):
     def on_m7(self, name, library, folder, *link):
         link_map = self.path(name + ".map")
         program = self.firmware("cortex-m7", library, *self.sources(name), flags=["-I", folder],
@@ -278,7 +284,7 @@ class Symbols(WeightCase):
         self.assertEqual(set(), lacking - COMPILER_CALLS - {"_GLOBAL_OFFSET_TABLE_", "__cpu_model"})
 
 
-class Options(WeightCase):
+class OptionsCase(WeightCase):
     """A library that leaves something out says so where it is asked for it."""
 
     PROGRAM = """
@@ -296,6 +302,9 @@ int main(int argc, char** argv) {
 }
 """
 
+    def library(self, name, *options):
+        return super().library(name, "-DCMAKE_CXX_FLAGS_RELEASE=-O0 -DNDEBUG", *options)  # quicker made, and it says the same
+
     def said(self, name, *options):
         library = self.library(name, *options)
         program = self.path(name + "-program")
@@ -307,6 +316,8 @@ int main(int argc, char** argv) {
         self.fdcg("compile", mesh, "-q", "--precision", "f32", "-o", graphs[1])
         return self.run_program(program, *graphs).stdout.decode().splitlines()
 
+
+class Options(OptionsCase):
     def test_one_precision(self):
         lines = self.said("f32", "-DFDCG_WITH_F64=OFF")
         self.assertEqual("0 opened", lines[1])
@@ -320,6 +331,19 @@ int main(int argc, char** argv) {
                                 "-DFDCG_BUILD_TESTS=OFF", "-DFDCG_WITH_F64=OFF", "-DFDCG_WITH_F32=OFF", code=1)
         self.assertIn(b"FDCG_WITH_F64, FDCG_WITH_F32 or both", done.stderr)
 
+    def test_no_files(self):
+        for line in self.said("no-files", "-DFDCG_WITH_FILES=OFF"):
+            self.assertRegex(line, "^2 .*built without files.*fdcg_open_memory")
+
+    def test_no_messages(self):
+        lines = self.said("no-messages", "-DFDCG_WITH_MESSAGES=OFF")
+        self.assertEqual(["0 opened", "0 opened"], lines[:2])
+        self.assertEqual("4 the file is longer or shorter than its header promises", lines[2])
+        lines = self.said("no-texts", "-DFDCG_WITH_MESSAGES=OFF", "-DFDCG_WITH_STATUS_TEXTS=OFF")
+        self.assertEqual(["0 opened", "0 opened", "4 "], lines)
+
+
+class OptionsOfGraphs(OptionsCase):
     def test_graphs_that_need_what_was_left_out(self):
         library = self.library("plain", "-DFDCG_WITH_BUSY_CORNERS=OFF", "-DFDCG_WITH_INEXACT_NODES=OFF")
         program = self.path("plain-program")
@@ -353,10 +377,6 @@ int main(int argc, char** argv) {
         said = self.run_program(program, *graphs).stdout.decode().splitlines()
         self.assertRegex(said[0], "^6 .*sides are to be derived,.*--planes stored.*FDCG_WITH_DERIVED_PLANES")
         self.assertEqual("0 opened", said[1])
-
-    def test_no_files(self):
-        for line in self.said("no-files", "-DFDCG_WITH_FILES=OFF"):
-            self.assertRegex(line, "^2 .*built without files.*fdcg_open_memory")
 
     FINGER = """
 #include <stdio.h>
@@ -399,13 +419,6 @@ int main(int argc, char** argv) {
         lines = self.run_program(program, graph).stdout.decode().splitlines()
         self.assertRegex(lines[0], "^1 material.mu_static is 0.1, allowed 0.2 to")
         self.assertEqual("0 5.000000", lines[1])  # two springs of 1,000 N/m in series, 10 mm
-
-    def test_no_messages(self):
-        lines = self.said("no-messages", "-DFDCG_WITH_MESSAGES=OFF")
-        self.assertEqual(["0 opened", "0 opened"], lines[:2])
-        self.assertEqual("4 the file is longer or shorter than its header promises", lines[2])
-        lines = self.said("no-texts", "-DFDCG_WITH_MESSAGES=OFF", "-DFDCG_WITH_STATUS_TEXTS=OFF")
-        self.assertEqual(["0 opened", "0 opened", "4 "], lines)
 
 
 if __name__ == "__main__":
