@@ -40,6 +40,7 @@ struct DeformableGeometry : GraphRecords<RealType> {
     return !bounds_nothing(edge.direction, normal, edge.length);
   }
 
+  // Whether a node's corners are not all in one line.
   [[nodiscard]] bool has_area(uint32_t node) const { return !upkeep.is_sliver(node); }
   template <class Node>
   [[nodiscard]] uint32_t spanning_corner(const Node& node, uint32_t k) const {

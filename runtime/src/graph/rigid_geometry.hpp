@@ -92,8 +92,6 @@ struct RigidGeometry : GraphRecords<RealType> {
   // Whether a side has a Voronoi plane at all.
   [[nodiscard]] static bool has_voronoi_plane(const Edge<Real>&, Vec3<Real>) { return true; }
 
-  // Whether a node's corners are not all in one line.
-  [[nodiscard]] static bool has_area(uint32_t) { return true; }
   // Of an exactly planar node: the first three span its plane.
   template <class Node>
   [[nodiscard]] uint32_t spanning_corner(const Node& node, uint32_t k) const {

@@ -180,12 +180,15 @@ template <class Geometry>
   return in_front == all ? Beginning::outside : Beginning::not_told;
 }
 
-// A face squeezed to a line has a neighbour's plane: at an edge of it, two faces are one.
+// Whether an edge's two faces differ: one of a deformable mesh that is squeezed to a line has a neighbour's plane.
 template <class Geometry>
 [[nodiscard]] inline bool has_two_faces(const GraphView<Geometry>& graph, const FanEntry& entry) {
-  if constexpr (Geometry::kKeepsDirections) return true;
-  const ConnectionRef<Geometry> connection = graph.connection(entry.connection);
-  return connection.type() == FDCG_BOUNDARY || (graph.has_area(connection.node(0)) && graph.has_area(connection.node(1)));
+  if constexpr (Geometry::kKeepsDirections) {
+    return true;
+  } else {
+    const ConnectionRef<Geometry> connection = graph.connection(entry.connection);
+    return connection.type() == FDCG_BOUNDARY || (graph.has_area(connection.node(0)) && graph.has_area(connection.node(1)));
+  }
 }
 
 // contact-model CORNER-4. Exact, but at corners of faces that lie off their planes. Not told: of an open corner, which has no

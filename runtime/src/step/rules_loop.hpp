@@ -119,8 +119,8 @@ template <class Geometry, class Real = typename Geometry::Real>
   return is_over && lets_go(walk.graph, walk.hip_bound, connection.type(), s);
 }
 
-// Whether the god-object is at an end of an edge but for rounding (contact-model TICK-5, EDGE-8). It is then placed on the
-// corner there, as by FACE-6.
+// Whether the god-object is at an end of an edge but for rounding (contact-model TICK-5, EDGE-8). It then sits on the
+// corner there, or beside it where that is nearer to the HIP (CORNER-6).
 template <class Geometry, class Real = typename Geometry::Real>
 [[gnu::noinline, gnu::cold]] bool goes_to_corner(Walk<Geometry>& walk, uint32_t edge) {
   const Real near = corner_rounding(walk.hip_bound, Real(2 * walk.graph.max_deviation()));
