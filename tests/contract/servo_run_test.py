@@ -217,7 +217,7 @@ class Run(ServoCase):
         scene = self.scene(objects=[cube], devices=[hand], limits={"force_n": 5})
         for _ in range(5):
             out = self.run_scene(scene, "--arm", "--no-log", "--for", "4").stdout
-            if not re.search(rb"disarmed \((host-late|writer-stuck|silence)\)", out):
+            if not re.search(rb"^  disarmed .*\b(host-late|writer-stuck|silence)\b", out, re.M):
                 break  # it was there until it shook
         self.assertRegex(out, rb"hand: (it shakes: the scene's forces are cut to 10 %|disarmed: the loop of hand, device and scene shakes)")
         log = self.path("shaking.fdcglog")
@@ -244,6 +244,7 @@ class Run(ServoCase):
         done = self.run_scene(scene, "--arm", "--no-log", "--for", "2", codes=(1,))
         self.assertIn(b"hand: gone", done.stdout)
         self.assertIn(b"hand: disarmed: ", done.stdout)
+        self.assertRegex(done.stdout, rb"(?m)^  disarmed .*\bread-failed\b")
 
     def test_of_devices_that_share_a_scene_one_is_unplugged_and_the_other_goes_on(self):
         scene = json.loads((EXAMPLE.parent / "two_devices.json").read_text())

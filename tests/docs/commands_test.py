@@ -70,7 +70,7 @@ class Coverage(unittest.TestCase):
 
 # The loop or its writer was held up, as it may be on a busy machine (no device of the pages holds a write): the commands
 # are run again.
-LATE = re.compile(r"disarmed \((host-late|writer-stuck)\)")
+LATE = re.compile(r"^  disarmed .*\b(host-late|writer-stuck)\b", re.M)
 LATE_TRIES = 10
 SHORTEST_LIMIT = 5e-3  # s; what the host allows a write, the shorter of its limits
 
