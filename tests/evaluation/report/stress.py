@@ -14,7 +14,7 @@ its own; the hash over all results is the same on every repetition.</p>"""
 COUNTS = ["nan", "growths", "push_through", "no_force", "thin_air", "off_surface", "pulls", "restless", "report", "force", "friction",
           "wrong_face", "uncertified", "stalled"]
 # contact ticks whose place is not judged, by why
-UNJUDGED = ["unjudged_carried", "unjudged_slit", "unjudged_other"]
+UNJUDGED = ["unjudged_carried", "unjudged_slit", "unjudged_between", "unjudged_other"]
 
 
 def content(run):

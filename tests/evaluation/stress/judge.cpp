@@ -52,6 +52,7 @@ void Verdicts::add(const Verdicts& more) {
   certified += more.certified;
   carried += more.carried;
   slit += more.slit;
+  between += more.between;
   other += more.other;
   worst_growth_eps = std::max(worst_growth_eps, more.worst_growth_eps);
   worst_off_surface_eps = std::max(worst_off_surface_eps, more.worst_off_surface_eps);
@@ -90,6 +91,7 @@ std::uint32_t Judge::judge(const fdcg_contact& before, const Hip& hip_m, const f
       if ((result.flags & kCarried) == 0) look_at_pull(tick, v);
       if ((result.flags & kCarried) == 0) {
         look_at_place(tick, v);
+        if (specimen_.body.sheets_meet) pass_over_between_sheets(tick, v);
       } else {
         ++v.carried;
       }

@@ -67,7 +67,10 @@ struct Verdicts {
   // Contact ticks whose place no law of rest or of friction judges, by why; all that holds for them too is still judged:
   std::uint64_t carried = 0;  // work is carried over
   std::uint64_t slit = 0;     // an edge whose faces' normals cancel but for rounding: its load is any
-  std::uint64_t other = 0;    // nothing else, but if a judge is changed
+  // Where faces cross or touch: a place on one sheet that would not be one of rest, were there not another sheet there. No edge
+  // joins the two, so the step hands the contact from one to the other and back (contact-model TICK-5).
+  std::uint64_t between = 0;
+  std::uint64_t other = 0;  // nothing else, but if a judge is changed
   double worst_growth_eps = 0, worst_off_surface_eps = 0, worst_restless_eps = 0, worst_pull_eps = 0, worst_inside_eps = 0,
          worst_descent_eps = 0;
 
@@ -143,6 +146,8 @@ class Judge {
   bool look_at_descent(Tick& tick, Verdicts& v) const;  // false: it has no say there
   [[nodiscard]] double turned(double edge_length, double depth) const;
   void look_at_place(Tick& tick, Verdicts& v);
+  void pass_over_between_sheets(Tick& tick, Verdicts& v) const;
+  [[nodiscard]] bool is_on_other_sheet(const Tick& tick) const;
   [[nodiscard]] double merged_descent_from(const Tick& tick) const;
   [[nodiscard]] Hip outwards(const Tick& tick) const;
   [[nodiscard]] bool is_in_merged_air(const Tick& tick) const;

@@ -241,4 +241,43 @@ void Judge::look_at_certificate(Tick& tick, Verdicts& v) {
   if (!certificate->holds_nearby(hip, tick.after, kMostDescent_eps)) tick.faults |= bit(Fault::uncertified);
 }
 
+// What another sheet at the god-object may hold is asked only where a law of one sheet's rest fails.
+void Judge::pass_over_between_sheets(Tick& tick, Verdicts& v) const {
+  constexpr std::uint32_t kOfRest =
+      bit(Fault::pull) | bit(Fault::descent) | bit(Fault::free_air) | bit(Fault::friction) | bit(Fault::wrong_face);
+  if ((tick.faults & kOfRest) == 0 || !is_on_other_sheet(tick)) return;
+  tick.faults &= ~kOfRest;
+  ++v.between;
+}
+
+// Whether the god-object is on a face that has no corner of its feature.
+bool Judge::is_on_other_sheet(const Tick& tick) const {
+  const fdcg_graph& graph = specimen_.graph();
+  const std::uint32_t feature = tick.after.feature;
+  std::vector<std::uint32_t> own;  // corners
+  if (tick.after.state == FDCG_FACE) {
+    for (std::uint32_t k = 0; k < specimen_.nodes[feature].side_count; ++k)
+      own.push_back(fdcg_get_side(&graph, feature, k).corner);
+  } else if (tick.after.state == FDCG_EDGE) {
+    own.assign(std::begin(specimen_.edges[feature].corner), std::end(specimen_.edges[feature].corner));
+  } else {
+    own.push_back(feature);
+  }
+  const double near = kMostOffSurface_eps * tick.rounding + deviation_;
+  const auto is_on = [&](std::uint32_t n) {
+    const NodeShape& node = specimen_.nodes[n];
+    if (std::abs(in_front_of_node(n, tick.god_object)) > near) return false;
+    for (std::uint32_t k = 0; k < node.side_count; ++k) {
+      const Rim& rim = specimen_.rims[node.first_side + k];
+      if (signed_distance(rim.normal, rim.offset, tick.god_object) > near) return false;
+      if (std::find(own.begin(), own.end(), fdcg_get_side(&graph, n, k).corner) != own.end()) return false;
+    }
+    return true;
+  };
+  for (std::uint32_t n = 0; n < specimen_.nodes.size(); ++n) {
+    if (is_on(n)) return true;
+  }
+  return false;
+}
+
 }  // namespace fdcg::test

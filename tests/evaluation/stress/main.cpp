@@ -188,6 +188,16 @@ class Workers {
   std::vector<std::thread> threads_;
 };
 
+void say_what_is_not_judged(const std::string& mesh, const std::vector<Row>& rows) {
+  std::map<std::string, std::string> numbers;  // by reason
+  for (const Row& row : rows) {
+    const std::string& why = fdcg::test::why_no_inside(row.precision);
+    if (!why.empty()) numbers[why] += (numbers[why].empty() ? "" : ", ") + std::string(name_of(row.precision));
+  }
+  for (const auto& [why, in] : numbers)
+    std::printf("%s: %s (%s): what is inside is not judged\n", mesh.c_str(), why.c_str(), in.c_str());
+}
+
 std::vector<Row> rows_of(const Options& options) {
   std::vector<Row> rows;
   const auto add = [&](const StressCase& c) {
@@ -197,6 +207,7 @@ std::vector<Row> rows_of(const Options& options) {
   };
   if (!options.mesh.empty()) {
     add(mesh_case(options.mesh));
+    say_what_is_not_judged(options.mesh, rows);
   } else {
     for (const StressCase& c : stress_cases()) {
       if (options.only.empty() || options.only == c.name) add(c);
@@ -263,7 +274,7 @@ void write_row(Table& table, const Row& row, const BlockResult& r, double second
             count_of(r, Fault::restless), v.worst_restless_eps, v.worst_inside_eps, count_of(r, Fault::descent),
             v.worst_descent_eps, count_of(r, Fault::free_air), count_of(r, Fault::report), count_of(r, Fault::force),
             count_of(r, Fault::friction), count_of(r, Fault::wrong_face), count_of(r, Fault::uncertified), v.certified,
-            count_of(r, Fault::stalled), v.carried, v.slit, v.other, hexadecimal(r.hash), seconds);
+            count_of(r, Fault::stalled), v.carried, v.slit, v.between, v.other, hexadecimal(r.hash), seconds);
 }
 
 // The case with the largest share of contact ticks whose place nothing judges.
@@ -272,7 +283,7 @@ struct Unjudged {
   std::string where = "nothing";
 
   void look_at(const Row& row, const BlockResult& r) {
-    const auto unjudged = static_cast<double>(r.verdicts.slit + r.verdicts.other);
+    const auto unjudged = static_cast<double>(r.verdicts.slit + r.verdicts.between + r.verdicts.other);
     const double part = unjudged / static_cast<double>(std::max<std::uint64_t>(1, r.contact_ticks));
     if (part > share) share = part, where = std::string(row.stress_case->name) + ", " + name_of(row.precision);
   }
@@ -307,8 +318,8 @@ int judge_whole(const BlockResult& r, const Unjudged& unjudged, const std::strin
   constexpr double kMostUnjudged = 0.01;
   bars.at_most("unjudged share of a case's contact ticks", unjudged.share, kMostUnjudged, "",
                unjudged.where + "; of all, " + std::to_string(r.verdicts.slit) + " in slits, " +
-                   std::to_string(r.verdicts.other) + " elsewhere, and " + std::to_string(r.verdicts.carried) +
-                   " carried, judged in part");
+                   std::to_string(r.verdicts.between) + " between sheets that meet, " + std::to_string(r.verdicts.other) +
+                   " elsewhere, and " + std::to_string(r.verdicts.carried) + " carried, judged in part");
   return bars.failures();
 }
 
@@ -359,6 +370,7 @@ int run(const Options& options, const std::string& program) {
                "stalled",
                "unjudged_carried",
                "unjudged_slit",
+               "unjudged_between",
                "unjudged_other",
                "hash",
                "seconds"});
@@ -434,7 +446,10 @@ int main(int argc, char** argv) {
   program.option("--steps", options.steps, "how many ticks in all, shared among the cases");
   program.option("--threads", options.threads, "results do not depend on it", 1, 64);
   program.option("--case", options.only, "this one alone");
-  program.option("--mesh", options.mesh, "this mesh file, compiled as by default, in place of the cases");
+  program.option(
+      "--mesh", options.mesh,
+      "this mesh file, compiled as by default, in place of the cases; what is inside is not judged where it is open, its faces "
+      "cross or touch, or some look inwards");
   program.choice("--precision", options.precision, "f64 or f32 alone", {"f64", "f32"});
   program.option("--block", options.block, "this block of each case alone");
   program.option("--stretch", options.variation.stretch,

@@ -231,6 +231,7 @@ std::string test_case_text(const Reproducer& r, const std::string& name) {
     text << "}";
   }
   text << "});\n  r.body.is_closed = " << (r.body.is_closed ? "true" : "false")
+       << (r.body.sheets_meet ? ";\n  r.body.sheets_meet = true" : "")
        << ";\n  r.body.soup.relative_quantum = " << text_of("%a", r.body.soup.relative_quantum)
        << ";\n  r.body.options.precision = Precision::" << (o.precision == bake::Precision::f32 ? "f32" : "f64")
        << ";\n  r.body.options.coplanar.kind = Coplanar::Kind::"

@@ -41,6 +41,7 @@ void read_remark(std::istringstream& line, Reproducer& r) {
   if (key == "merge") r.body.options.merge = value == "1";
   if (key == "planes") r.body.options.store_planes = value == "stored";
   if (key == "closed") r.body.is_closed = value == "1";
+  if (key == "sheets_meet") r.body.sheets_meet = value == "1";
   if (key == "quantum") r.body.soup.relative_quantum = number(value);
   if (key == "absolute_quantum") r.body.soup.absolute_quantum = number(value);
   if (key == "metres_per_unit") r.body.options.metres_per_unit = number(value);
@@ -80,10 +81,11 @@ void write_reproducer(const std::string& path, const Reproducer& r) {
        << "# fault " << name_of(r.fault) << "\n# command " << r.command << "\n# body " << r.body.description << "\n# precision "
        << (o.precision == bake::Precision::f32 ? "f32" : "f64") << "\n# flat "
        << (o.coplanar.kind == bake::Coplanar::Kind::quantum ? "quantum" : "exact") << "\n# merge " << o.merge << "\n# planes "
-       << (o.store_planes ? "stored" : "derived") << "\n# closed " << r.body.is_closed << "\n# quantum "
-       << exact(r.body.soup.relative_quantum) << "\n# absolute_quantum " << exact(r.body.soup.absolute_quantum)
-       << "\n# metres_per_unit " << exact(o.metres_per_unit) << "\n# mu_static " << exact(r.params.mu_static)
-       << "\n# mu_dynamic " << exact(r.params.mu_dynamic) << "\n# edge_friction " << r.params.edge_friction << '\n';
+       << (o.store_planes ? "stored" : "derived") << "\n# closed " << r.body.is_closed << "\n# sheets_meet "
+       << r.body.sheets_meet << "\n# quantum " << exact(r.body.soup.relative_quantum) << "\n# absolute_quantum "
+       << exact(r.body.soup.absolute_quantum) << "\n# metres_per_unit " << exact(o.metres_per_unit) << "\n# mu_static "
+       << exact(r.params.mu_static) << "\n# mu_dynamic " << exact(r.params.mu_dynamic) << "\n# edge_friction "
+       << r.params.edge_friction << '\n';
   for (const bake::Vec3& p : r.body.soup.points)
     file << "v " << exact(p.x) << ' ' << exact(p.y) << ' ' << exact(p.z) << '\n';
   for (std::size_t f = 0; f < r.body.soup.face_count(); ++f) {

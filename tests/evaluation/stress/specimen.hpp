@@ -28,6 +28,7 @@ struct Body {
   bake::PolygonSoup soup;  // source units
   bake::CompileOptions options;
   bool is_closed = true;             // and free of self-intersection: the inside is known
+  bool sheets_meet = false;          // faces cross or touch others than their neighbours
   std::vector<std::uint32_t> focus;  // points of the soup at which hands like to be; may be empty
   std::string description;
 };

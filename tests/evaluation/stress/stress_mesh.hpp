@@ -8,8 +8,11 @@
 
 namespace fdcg::test {
 
-// The file is read once. Where it is open its inside is not judged; it should not pass through itself. Throws
-// std::runtime_error, naming the file. One file a run: a second call replaces the first.
+// The file is read once. Throws std::runtime_error, naming the file. One file a run: a second call replaces the first.
 const StressCase& mesh_case(const std::string& file);
+
+// Why the inside of the last mesh_case, rounded to these numbers, is not judged: it is open, or its faces cross or touch one
+// another, or some look inwards. Empty where it is judged.
+const std::string& why_no_inside(bake::Precision precision);
 
 }  // namespace fdcg::test
