@@ -189,8 +189,18 @@ Progress move_god_object(Walk<Geometry>& walk, Feature start, Vec3<Real> start_g
     if (walk.active.is_free()) {
       if (trail.has_come_nearer()) space->inner->sweep.stalled_sweeps = 0;
       const Vec3<Real> stood = walk.god_object;
+      const Feature seat = walk.seat;
+      const bool can_wait = FDCG_WITH_BUSY_CORNERS && trail.has_come_nearer() && walk.work_left < kRuleWork / 2;
       step_clear_of(walk, at);
       progress.flags |= sweep_to_hip(walk, at, stood, space);
+      if (can_wait && progress.flags != 0) {  // contact-model BOUND-2: the next tick has more work for this sweep
+        space->inner->sweep.is_carried = 0;
+        walk.god_object = stood;
+        walk.active = at;
+        walk.seat = seat;
+        progress.flags = FDCG_RESULT_TRANSITION_BOUND;
+        return progress;
+      }
       if (walk.active.is_free()) return progress;
       ++progress.transitions;
     }
@@ -208,18 +218,18 @@ Progress move_god_object(Walk<Geometry>& walk, Feature start, Vec3<Real> start_g
     }
     walk.spend(kTransitionWork);
     if (walk.work_left == 0) {
-      // No nearer: where the tick began the next one would do the same; elsewhere, with HIP and god-object where they were, a
-      // circle may take several ticks (contact-model TICK-6).
+      // No nearer: where the tick began the next one would do the same; elsewhere, with the HIP where it was, a circle may take
+      // several ticks (contact-model TICK-6).
       constexpr uint16_t kMostStalledTicks = 3;
-      const Vec3<Real> gap = walk.gap(), begun = narrow<Real>(space->begun->god_object) - walk.hip;  // before any hops
+      const Vec3<Real> begun = narrow<Real>(space->begun->god_object);  // before any hops
       const double* const last = space->begun->hip;
-      const bool has_moved = last[0] != walk.hip.x || last[1] != walk.hip.y || last[2] != walk.hip.z || norm1(gap - begun) > 0;
+      const bool is_held = last[0] == walk.hip.x && last[1] == walk.hip.y && last[2] == walk.hip.z;
       uint16_t* const stalled = &space->inner->sweep.stalled_ticks;
-      const bool is_at_start = walk.active == start;
-      if (dot(gap, gap) < dot(begun, begun) || (has_moved && !is_at_start)) {
+      // Of two squared distances the difference, whatever the HIP's own rounding.
+      if (dot(walk.god_object - begun, walk.gap() + (begun - walk.hip)) < 0 || (!is_held && walk.active != start)) {
         *stalled = 0;
       } else if (*stalled < kMostStalledTicks) {
-        *stalled = static_cast<uint16_t>(is_at_start ? kMostStalledTicks : *stalled + 1);
+        *stalled = static_cast<uint16_t>(walk.active == start ? kMostStalledTicks : *stalled + 1);
       }
       if (*stalled < kMostStalledTicks) progress.flags |= FDCG_RESULT_TRANSITION_BOUND;
       return progress;

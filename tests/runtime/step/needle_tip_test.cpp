@@ -113,6 +113,29 @@ TEST_CASE("ten thousand sides: no tick's work runs out") {
   }
 }
 
+// contact-model BOUND-2: such a tick ends on the feature that lets go, and the next one has all its work for the sweep.
+TEST_CASE("a tick that has walked past dozens of needles does not end in the sweep of what lets go") {
+  for (const Precision precision : {Precision::f64, Precision::f32}) {
+    const PolygonSoup strip = needle_strip(1500, 0.5, 3);
+    const CompiledMesh mesh(strip, exact_options(precision));
+    Random random(5);
+    const fdcg_params params = contact_params(0, 0);
+    fdcg_contact contact = {};
+    int walked = 0;
+    for (int i = 0; i < 20'000; ++i) {
+      const double hip[] = {random.uniform(-0.5, 0.5), random.uniform(-0.5, 0.5), random.uniform(-0.3, 0.3)};
+      for (int held = 0; held < 10; ++held) {
+        fdcg_result result;
+        fdcg_step(&mesh.view(), &params, &contact, hip, &result);
+        const bool has_walked = result.transitions > 40;
+        walked += has_walked;
+        if (has_walked && (result.flags & FDCG_RESULT_SWEEP_BOUND) != 0) FAIL_CHECK("hand " << i << ", " << held);
+      }
+    }
+    CHECK(walked > 1000);
+  }
+}
+
 TEST_CASE("needles along each axis, hit tip first and sideways") {
   const double quarter = std::acos(0.0);
   const Rotation turns[] = {rotation_about({0, 0, 1}, 0),       rotation_about({1, 0, 0}, 2 * quarter),
