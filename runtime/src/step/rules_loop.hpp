@@ -152,6 +152,16 @@ template <class Geometry, class Real = typename Geometry::Real>
   return true;
 }
 
+// From the HIP to the god-object as the tick found it, before any hops.
+template <class Geometry, class Real = typename Geometry::Real>
+inline Vec3<Real> gap_begun(const Walk<Geometry>& walk, const FreeSpace& space) {
+  return narrow<Real>(space.begun->god_object) - walk.hip;
+}
+template <class Real>
+inline bool is_shorter(const Vec3<Real>& a, const Vec3<Real>& b) {
+  return dot(a, a) < dot(b, b);
+}
+
 // Drives the rules until one rests, from where the contact stands (`decision` null) or from what its feature's rule has already
 // decided. It stood on `start` then, `start_gap` away from the HIP; `hopped`: the edge over which hops led there, or kFree.
 template <class Geometry, class Real = typename Geometry::Real>
@@ -190,7 +200,8 @@ Progress move_god_object(Walk<Geometry>& walk, Feature start, Vec3<Real> start_g
       if (trail.has_come_nearer()) space->inner->sweep.stalled_sweeps = 0;
       const Vec3<Real> stood = walk.god_object;
       const Feature seat = walk.seat;
-      const bool can_wait = FDCG_WITH_BUSY_CORNERS && trail.has_come_nearer() && walk.work_left < kRuleWork / 2;
+      const bool can_wait =
+          FDCG_WITH_BUSY_CORNERS && walk.work_left < kRuleWork / 2 && is_shorter(walk.gap(), gap_begun(walk, *space));
       step_clear_of(walk, at);
       progress.flags |= sweep_to_hip(walk, at, stood, space);
       if (can_wait && progress.flags != 0) {  // contact-model BOUND-2: the next tick has more work for this sweep
@@ -219,19 +230,18 @@ Progress move_god_object(Walk<Geometry>& walk, Feature start, Vec3<Real> start_g
     walk.spend(kTransitionWork);
     if (walk.work_left == 0) {
       // No nearer: where the tick began the next one would do the same; elsewhere, with the HIP where it was, a circle may take
-      // several ticks (contact-model TICK-6).
-      constexpr uint16_t kMostStalledTicks = 3;
-      const Vec3<Real> begun = narrow<Real>(space->begun->god_object);  // before any hops
+      // several ticks, and a way around a fan, nearer by less than rounding, as many as pass all faces (contact-model TICK-6).
+      constexpr uint32_t kMostStalledTicks = 3, kFacesATick = 8;
       const double* const last = space->begun->hip;
       const bool is_held = last[0] == walk.hip.x && last[1] == walk.hip.y && last[2] == walk.hip.z;
+      const bool is_at_start = walk.active == start;
+      const Vec3<Real> gap = walk.gap(), begun = gap_begun(walk, *space);
+      uint32_t most = kMostStalledTicks;
+      if (norm1(gap - begun) > 0) most += walk.graph.header()->node_count / kFacesATick;
       uint16_t* const stalled = &space->inner->sweep.stalled_ticks;
-      // Of two squared distances the difference, whatever the HIP's own rounding.
-      if (dot(walk.god_object - begun, walk.gap() + (begun - walk.hip)) < 0 || (!is_held && walk.active != start)) {
-        *stalled = 0;
-      } else if (*stalled < kMostStalledTicks) {
-        *stalled = static_cast<uint16_t>(walk.active == start ? kMostStalledTicks : *stalled + 1);
-      }
-      if (*stalled < kMostStalledTicks) progress.flags |= FDCG_RESULT_TRANSITION_BOUND;
+      const bool gets_on = is_shorter(gap, begun) || (!is_held && !is_at_start);
+      *stalled = static_cast<uint16_t>(gets_on ? 0 : *stalled + (*stalled < most));
+      if (gets_on || (*stalled < most && !is_at_start)) progress.flags |= FDCG_RESULT_TRANSITION_BOUND;
       return progress;
     }
   }
