@@ -407,12 +407,13 @@ class NodeEntry {
     return node.corner(k) == corner_on_line_ || node.corner(node.next(k)) == corner_on_line_;
   }
 
-  // Whether a way that crosses the node's plane at `fraction`, just outside of this side by its orientation, may pass inside
-  // all the same, where corners lie off their planes. Of a concave side where the way stays in front of the wall that stands
-  // there: a way along the groove would pass between the two. Of a convex side where the way begins behind the slab of the face
-  // across, which it therefore does not enter, and meets this plane behind that one's: it would pass between the two. Of any
-  // other where the loop as it is, sides in line that bend inwards up to rounding error included, winds about the way: that is
-  // still to be asked, once for all sides.
+  // Whether a way that crosses the node's plane at `fraction`, outside of this side by its orientation, may pass inside all the
+  // same, where corners lie off their planes. Of a concave side where the way stays in front of the wall that stands there, up
+  // to its slab, and crosses near the side or ends below the node: a way along the groove would pass between the two. Two
+  // planes that lie nearly alike meet farther from their edge than their corners lie off them. Of a convex side where the way
+  // does not enter the face across, since it begins behind that one's slab, or leaves what lies behind it, and meets this plane
+  // behind that one's: it would pass between the two. Of any other where the loop as it is, sides in line that bend inwards up
+  // to rounding error included, winds about the way: that is still to be asked, once for all sides.
   [[nodiscard, gnu::noinline, gnu::cold]] bool is_open(NodeRef<Geometry> node, uint32_t k, Real fraction,
                                                        bool* must_wind) const {
     if (!graph_.has_inexact_nodes()) return false;
@@ -420,11 +421,13 @@ class NodeEntry {
     const Vec3<Real> point = point_at(fraction);
     const bool is_near = distance_beyond(node, k, point) <= slab_;
     const uint32_t type = graph_.connection(node.connection(k)).type();
-    if (is_near && (type == FDCG_CONCAVE || type == FDCG_CONVEX)) {
+    if (type == FDCG_CONCAVE || (is_near && type == FDCG_CONVEX)) {
       const NodeRef<Geometry> wall = graph_.node(node.across(k));
-      const bool begins_in_slab = distance_from(wall, from_) >= -slab_;
-      if (type == FDCG_CONVEX ? !begins_in_slab && distance_from(wall, point) < 0
-                              : wall.is_inexact() && begins_in_slab && distance_from(wall, to_) >= 0)
+      const Real begin = distance_from(wall, from_);
+      const bool begins_in_slab = begin >= -slab_;
+      if (type == FDCG_CONVEX
+              ? !(begins_in_slab && (begin >= 0 || !left_lies_behind(wall))) && distance_from(wall, point) < 0
+              : begins_in_slab && distance_from(wall, to_) >= 0 && (is_near || distance_beyond(node, k, to_) <= 0))
         return true;
     }
     *must_wind = true;
