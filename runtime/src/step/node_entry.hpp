@@ -70,7 +70,9 @@ class NodeEntry {
         to_bound_(plane_rounding_bound(graph_, to_)),
         left_(left),
         work_left_(work_left) {
-    slab_ = slab_depth(graph_.max_deviation(), from_bound_);
+    // On a face's plane: a corner of that face and of a neighbour may lie off both planes.
+    const double deviation = graph_.max_deviation();
+    slab_ = slab_depth(left_.state == FDCG_FACE ? 2 * deviation : deviation, from_bound_);
   }
 
   // Whether all of the way is known to be over the face that it meets first; not told of one met in a tick before.
