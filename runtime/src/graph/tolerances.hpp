@@ -47,7 +47,8 @@ inline double at_corner_rounding(Vec3<double> corner, double extent) {
   return 4.0 * RealLimits<Real>::kEpsilon * (norm1(corner) + extent);
 }
 
-// FACE-1: a god-object so near to a Voronoi plane sits on it: the rounding of its own place and of that plane's distance.
+// FACE-1: a god-object so near to a Voronoi plane sits on it: the rounding of its own place and of that plane's distance; in a
+// graph with inexact nodes `delta` is added.
 template <class Real>
 inline Real rim_rounding(const Vec3<Real>& god_object, Real extent) {
   return 8 * RealLimits<Real>::kEpsilon * (norm1(god_object) + extent);
@@ -126,6 +127,9 @@ inline Real least_step_clear(double extent) {
 // where its squared distance from the HIP is less than this share of that of all that hold it.
 template <class Real>
 inline constexpr Real kClearlyNearer2 = Real(1) / (1 << 20);
+// ... and where nothing holds it, so that it would rest on the corner itself, of that of the corner.
+template <class Real>
+inline constexpr Real kNearerThanApex2 = Real(1) / 4;
 
 // ---- A busy corner
 

@@ -189,7 +189,8 @@ inline Feature next_from_corner(Walk<Geometry>& walk, CornerRef<Geometry> corner
     search_all(search, corner);
   }
   const Feature found = search.best.feature;
-  if (walk.graph.has_inexact_nodes() && search.lost2 < kClearlyNearer2<Real> * search.best.distance2 &&
+  const Real share = found.is_free() ? kNearerThanApex2<Real> : kClearlyNearer2<Real>;
+  if (walk.graph.has_inexact_nodes() && search.lost2 < share * search.best.distance2 &&
       search.best.distance2 > square(slab_depth(2 * walk.graph.max_deviation(), walk.hip_bound)))
     return kFree;
   if (is_inside) return found.is_free() ? walk.active : found;

@@ -173,7 +173,8 @@ template <class Geometry, class Real = typename Geometry::Real>
 // ends: a face like a needle may be narrower than that rounding, and near the planes of all its sides.
 template <class Geometry, class Real = typename Geometry::Real>
 inline uint32_t side_under(const Walk<Geometry>& walk, NodeRef<Geometry> node) {
-  const Real rounding = rim_rounding(walk.god_object, Real(walk.graph.header()->extent));
+  Real rounding = rim_rounding(walk.god_object, Real(walk.graph.header()->extent));
+  if (walk.graph.has_inexact_nodes()) rounding = rounding + Real(walk.graph.max_deviation());
   for (uint32_t k = 0; k < node.side_count(); ++k) {
     if (distance_beyond(node, k, walk.god_object) >= -rounding && is_between_ends(node, k, walk.god_object)) return k;
   }

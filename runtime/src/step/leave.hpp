@@ -24,6 +24,8 @@ template <class Geometry, class Real = typename Geometry::Real>
     if (side_of(walk.graph, node, walk.god_object, bound, &walk.work_left) >= 0) break;
     walk.god_object = walk.god_object + outward * step;
   }
+  // In front of its corners too, and so of the mesh that it was merged from.
+  if (node.is_inexact()) walk.god_object = walk.god_object + outward * Real(walk.graph.max_deviation());
 }
 
 // Call before the sweep that leaves `left`, whose rule has found the HIP outside.
