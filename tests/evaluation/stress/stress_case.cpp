@@ -7,6 +7,7 @@
 
 #include "meshes.hpp"
 #include "squashed.hpp"
+#include "stress_decimals.hpp"
 #include "stress_points.hpp"
 
 namespace fdcg::test {
@@ -312,6 +313,11 @@ const std::vector<StressCase>& stress_cases() {
       {"starts-inside", "free until it has left, then met", small_bodies, {inside}, kMayCarry},
       {"aimed", "no way slips through a seam", small_bodies, {aim}, kMayCarry},
       {"merged-faces", "flat within the quantum: one node", merged_faces, {wander, slide, on_planes, jump}, kMayCarry},
+      {"decimals",
+       "flat but for a text file's decimals: one node",
+       decimal_bodies,
+       {wander, slide, dive, on_planes, aim, jump},
+       kMayCarry},
       {"squashed-10", kSquashed, squashed<1>, {wander, slide, dive, on_planes, aim, jump}, kMayCarry},
       {"squashed-100", kSquashed, squashed<2>, {wander, slide, dive, on_planes, aim, jump}, kMayCarry},
       {"squashed-1000", kSquashed, squashed<3>, {wander, slide, dive, on_planes, aim, jump}, kMayCarry},

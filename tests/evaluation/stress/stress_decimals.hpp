@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
+// Bodies of the stress case "decimals": bowls, vases, boxes and grooves, turned, as a text file of three to six decimals has
+// them, in triangles: hardly any two lie in one plane, and the compiler merges what does but for that rounding.
+#pragma once
+
+#include "specimen.hpp"
+
+namespace fdcg::test {
+
+Body decimal_bodies(Random& random, bake::Precision precision);
+
+}  // namespace fdcg::test
