@@ -33,7 +33,7 @@ PolygonSoup bowl(Random& random) {
 }
 
 PolygonSoup some_body(Random& random) {
-  switch (random.below(8)) {
+  switch (random.below(12)) {
     case 0:
       return grid_box(3, 2, 2, {1, 0.8, 0.7});
     case 1:
@@ -44,6 +44,13 @@ PolygonSoup some_body(Random& random) {
       return v_groove(random.uniform(0.05, 3));
     case 4:
       return subdivided(wedge(random.uniform(0.1, 3)), random.bits());
+    case 5:
+    case 6:
+      return star_sphere(2 + static_cast<int>(random.below(3)), random.uniform(0.02, 0.3), random.bits());
+    case 7:
+    case 8:
+      return fan_block(3 + static_cast<int>(random.below(8)), random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1),
+                       random.uniform(-0.1, 0.1));
     default:
       return bowl(random);
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bodies of the stress case "decimals": bowls, vases, boxes and grooves, turned, as a text file of three to six decimals has
+// Bodies of the stress case "decimals": bowls, vases, boxes, grooves and scans, turned, as a text file of three to six decimals has
 // them, in triangles: hardly any two lie in one plane, and the compiler merges what does but for that rounding.
 #pragma once
 
