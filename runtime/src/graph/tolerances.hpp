@@ -127,7 +127,7 @@ inline Real least_step_clear(double extent) {
 // where its squared distance from the HIP is less than this share of that of all that hold it.
 template <class Real>
 inline constexpr Real kClearlyNearer2 = Real(1) / (1 << 20);
-// ... and where nothing holds it, so that it would rest on the corner itself, of that of the corner.
+// ... Where none holds it, it would rest on the corner: of the corner's squared distance this share.
 template <class Real>
 inline constexpr Real kNearerThanApex2 = Real(1) / 4;
 

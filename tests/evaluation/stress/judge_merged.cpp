@@ -30,10 +30,9 @@ void Judge::look_at_merged_way(Tick& tick) const {
   tick.is_way_clear = !way.is_through && !way.touches && !solid.comes_near(from, tick.hip, moved_);
   // Faces are slabs: their planes lie off the mesh by the deviation, and they are met from as far in front of their planes and
   // beyond their sides, and at a sharp edge from below (contact-model FREE-3); at a sharp corner such planes meet a few
-  // deviations away. Of 10^7 ticks on bodies of a text file's decimals eleven are held from farther off than moved_, and of
-  // 6 x 10^6 one from farther off than twice that. What is let go in the same tick is not felt.
-  const bool is_held = tick.after.state != FDCG_FREE;
-  if (tick.is_way_clear && is_held && !solid.comes_near(from, tick.hip, std::max(2 * moved_, deviation_)))
+  // deviations away. Of 10^7 ticks on bodies of a text file's decimals some ten are met from farther off than moved_, and of
+  // 6 x 10^6 one from farther off than twice that.
+  if (tick.is_way_clear && is_stopped && !solid.comes_near(from, tick.hip, std::max(2 * moved_, deviation_)))
     tick.faults |= bit(Fault::thin_air);
   // What is free may be below a merged face's plane by its slab, one deviation, which lies another below the mesh: so far
   // inside a way may run along the face. Of 1.5 x 10^7 ticks on noisy faces two ways do so by 1.5 deviations.
