@@ -131,8 +131,9 @@ template <class Geometry, class Real = typename Geometry::Real>
   uint32_t best_entry = 0;
   const auto consider = [&](uint32_t i) {
     const Feature before = search.best.feature;
+    const Real lost2 = search.lost2;
     search.look_at(graph.fan_entry(corner, i));
-    if (search.best.feature == before) return false;
+    if (search.best.feature == before && !(search.lost2 < lost2)) return false;
     best_entry = i;
     return true;
   };
@@ -162,9 +163,11 @@ template <class Geometry, class Real = typename Geometry::Real>
     if (has_two) stack[waiting++] = second_is_better ? first : second;
     stack[waiting++] = second_is_better ? second : first;
   }
-  // Boxes cannot tell apart what reaches as far up to rounding error; the neighbours of the one found may yet be nearer.
+  // Boxes cannot tell apart what reaches as far up to rounding error; the neighbours of the one found may yet be nearer, past
+  // some that are nearer and do not hold.
   const uint32_t entries = corner.fan_count();
-  for (bool goes_on = search.best.feature.state != FDCG_FREE; goes_on && work < kFanSearchWork; work += 2 * kFanWork) {
+  const bool is_apex = search.best.feature.is_free() && search.lost2 == 2 * search.half_t2;
+  for (bool goes_on = !is_apex; goes_on && work < kFanSearchWork; work += 2 * kFanWork) {
     const uint32_t here = best_entry;
     const bool is_before = consider(here > 0 ? here - 1 : entries - 1);
     goes_on = consider(here + 1 < entries ? here + 1 : 0) || is_before;

@@ -183,7 +183,7 @@ class NodeEntry {
       if (start_side >= -from_bound_ && !FDCG_MUTANT("seat")) try_other_wall(n, node);
       return;
     }
-    if (start_side < 0 && left_lies_behind(node)) return;
+    if (start_side < 0 && (left_lies_behind(node) || begins_beside(node))) return;
     const bool is_over = kTellsOver && lies == Lies::over && start_side >= 0;  // where it meets the plane, too
     const Real fall = start_side - end_side, rounded = start_side > 0 ? start_side / fall : Real(0);
     const Real noise = from_bound_ + to_bound_ + (is_slab ? slab_ : Real(0));
@@ -202,11 +202,7 @@ class NodeEntry {
       Real end = !is_below ? Real(1) : fall != 0 ? (start_side + thick) / fall : Real(-1);
       uint32_t side_left = FDCG_NONE;
       if (!clip_to(node, 0, &begin, &end, &side_left) || is_past_all_ends(node, point_at(fraction))) return;
-      // Out of the slab over a convex side, in front at its end of the face across by more than that one's slab: no edge would
-      // hold it (EDGE-1), and it has come below neither face.
-      if (side_left != FDCG_NONE && graph_.connection(node.connection(side_left)).type() == FDCG_CONVEX &&
-          distance_from(graph_.node(node.across(side_left)), to_) > slab_)
-        return;
+      if (side_left != FDCG_NONE && ends_in_air_beyond(node, side_left)) return;  // out of the slab
       met_exactly = 0;
     }
     if (FDCG_MUTANT("distance-tolerance") && left_.state != FDCG_FREE && fraction < Real(1e-4)) return;
@@ -236,6 +232,24 @@ class NodeEntry {
     spend(work_left_, kBesideWork * (k + 1));
     if (k < node.side_count()) return Lies::beside;
     return is_inside ? Lies::over : Lies::unsure;
+  }
+
+  // Of a way that leaves a node's slab over a convex side: whether it ends in front of the face across by more than that one's
+  // slab. No edge would hold it (EDGE-1), and it has come below neither face.
+  [[nodiscard, gnu::noinline, gnu::cold]] bool ends_in_air_beyond(NodeRef<Geometry> node, uint32_t k) const {
+    return graph_.connection(node.connection(k)).type() == FDCG_CONVEX &&
+           distance_from(graph_.node(node.across(k)), to_) > slab_;
+  }
+  // Of a way that begins behind a plane by no more than the slab: whether that is not over the node, but in the air beside it,
+  // or below a wall that stands at its side, from where it does not come in front of the node.
+  [[nodiscard, gnu::noinline, gnu::cold]] bool begins_beside(NodeRef<Geometry> node) const {
+    for (uint32_t k = 0; k < node.side_count(); ++k) {
+      if (!(distance_beyond(node, k, from_) > slab_)) continue;
+      if (ends_in_air_beyond(node, k)) return true;
+      const ConnectionRef<Geometry> connection = graph_.connection(node.connection(k));
+      if (connection.type() == FDCG_CONCAVE && distance_from(graph_.node(node.across(k)), from_) < -slab_) return true;
+    }
+    return false;
   }
 
   // A place inside of all sides is between the ends of one, the nearest; but of corners in one line, all the line is inside.
