@@ -120,6 +120,43 @@ std::optional<bool> told_in_doubles(const std::vector<std::pair<Hip, Hip>>& fan,
   return std::nullopt;
 }
 
+struct LongWing {
+  Long left, right, normal;  // from the corner; the normal is of any length
+  explicit LongWing(const Hip& corner, const std::pair<Hip, Hip>& wing)
+      : left(way(corner, wing.first)), right(way(corner, wing.second)), normal(cross(left, right)) {}
+};
+
+// Whether a way of the god-object from a corner to its foot is as long as to `place`, but for `so_near`.
+bool is_near(const Long& foot, const Long& place, double so_near) {
+  const Long apart = {foot[0] - place[0], foot[1] - place[1], foot[2] - place[2]};
+  return dot(apart, apart) <= static_cast<long double>(so_near) * so_near;
+}
+
+// All from the corner.
+bool rests_on_face(const LongWing& face, const Long& place, double so_near, const Long& t) {
+  const Long& n = face.normal;
+  const long double height = dot(n, t) / dot(n, n);
+  if (!(height < 0)) return false;
+  const Long foot = {t[0] - n[0] * height, t[1] - n[1] * height, t[2] - n[2] * height};
+  const Long across = {face.right[0] - face.left[0], face.right[1] - face.left[1], face.right[2] - face.left[2]};
+  const Long from_left = {foot[0] - face.left[0], foot[1] - face.left[1], foot[2] - face.left[2]};
+  const bool is_over =
+      dot(cross(n, face.left), foot) >= 0 && dot(cross(face.right, n), foot) >= 0 && dot(cross(n, across), from_left) >= 0;
+  return is_over && is_near(foot, place, so_near);
+}
+
+// On the edge between two faces: to the left of `a` and to the right of `b`.
+bool rests_on_edge(const LongWing& a, const LongWing& b, const Long& place, double so_near, const Long& t) {
+  const Long& edge = a.left;
+  const long double share = dot(t, edge) / dot(edge, edge);
+  if (!(share >= 0 && share <= 1)) return false;
+  const bool is_behind_a = dot(a.normal, t) < 0, is_behind_b = dot(b.normal, t) < 0;
+  const bool is_groove = dot(a.normal, b.left) > 0;
+  if (is_groove ? !is_behind_a && !is_behind_b : !is_behind_a || !is_behind_b) return false;
+  if ((is_behind_a && dot(cross(a.normal, edge), t) > 0) || (is_behind_b && dot(cross(edge, b.normal), t) > 0)) return false;
+  return is_near({edge[0] * share, edge[1] * share, edge[2] * share}, place, so_near);
+}
+
 }  // namespace
 
 Descent::Descent(const std::vector<std::array<Hip, 3>>& triangles) {
@@ -148,6 +185,18 @@ double Descent::reach(const Hip& corner, const Hip& hip) const {
     most = std::max(most, std::sqrt(dot(in_plane, in_plane)));
   }
   return static_cast<double>(most);
+}
+
+bool Descent::rests_beside(const Hip& corner, const Hip& place, double so_near, const Hip& hip) const {
+  const std::vector<Wing>& fan = fan_at(corner);
+  const Long t = way(corner, hip), at = way(corner, place);
+  return std::any_of(fan.begin(), fan.end(), [&](const Wing& wing) {
+    const LongWing face(corner, wing);
+    if (rests_on_face(face, at, so_near, t)) return true;
+    return std::any_of(fan.begin(), fan.end(), [&](const Wing& other) {
+      return other.second == wing.first && rests_on_edge(face, LongWing(corner, other), at, so_near, t);
+    });
+  });
 }
 
 bool Descent::begins_outside(const Hip& corner, const Hip& hip) const {

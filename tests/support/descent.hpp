@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether a corner of a solid is where a god-object without friction may rest, from the source triangles alone: the directions
-// that leave the corner without entering the solid are a cone, and none of them may lead nearer to the HIP. Written apart from
-// the step: no Voronoi planes, no search by features, and the one decision that rounding could turn is made in exact numbers.
+// Whether a corner or an edge of a solid is where a god-object without friction may rest, from the source triangles alone. Of a
+// corner, the directions that leave it without entering the solid are a cone, and none of them may lead nearer to the HIP.
+// Written apart from the step: no Voronoi planes, no search by features, and at a corner the one decision that rounding could
+// turn is made in exact numbers.
 #pragma once
 
 #include <array>
@@ -24,6 +25,10 @@ class Descent {
 
   // Whether the straight way from the corner to the HIP begins outside the solid or on its surface. Exact.
   [[nodiscard]] bool begins_outside(const Hip& corner, const Hip& hip) const;
+
+  // Whether a god-object so near to `place` may rest on an edge or a face at `corner`: at the foot of the HIP, from where no
+  // way that does not enter the solid leads nearer. In long double.
+  [[nodiscard]] bool rests_beside(const Hip& corner, const Hip& place, double so_near, const Hip& hip) const;
 
  private:
   using Wing = std::pair<Hip, Hip>;  // a triangle at the corner: its other two points, counter-clockwise from outside

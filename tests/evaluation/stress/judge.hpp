@@ -151,9 +151,12 @@ class Judge {
   [[nodiscard]] double merged_descent_from(const Tick& tick) const;
   [[nodiscard]] Hip outwards(const Tick& tick) const;
   [[nodiscard]] bool is_in_merged_air(const Tick& tick) const;
+  [[nodiscard]] bool rests_on_mesh(const Tick& tick) const;
   [[nodiscard]] bool passes_busy_corner(const Hip& from, const Hip& to) const;
   void look_at_way(Tick& tick);
   void look_at_merged_way(Tick& tick) const;
+  [[nodiscard]] bool passes_slab(const Hip& from, const Hip& to) const;
+  [[nodiscard]] bool passes_slab_of(std::uint32_t n, const Hip& from, const Hip& to) const;
   bool is_let_off(const Hip& point);
   void look_inside(Tick& tick, Verdicts& v);
   void look_at_owed_force(Tick& tick);

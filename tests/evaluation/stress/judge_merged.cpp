@@ -20,6 +20,45 @@ Hip place_between(const Hip& from, const Hip& to, double share) {
 
 }  // namespace
 
+// Whether a way passes a merged face as it is met (contact-model FREE-3): from as far off its plane as its corners may be, and
+// as far beyond its sides, at a groove as far below the face across. Beyond a sharp corner, and at the end of a shallow groove,
+// that is many deviations from the mesh.
+bool Judge::passes_slab(const Hip& from, const Hip& to) const {
+  for (std::uint32_t n = 0; n < specimen_.nodes.size(); ++n) {
+    if (!specimen_.nodes[n].is_planar && passes_slab_of(n, from, to)) return true;
+  }
+  return false;
+}
+
+bool Judge::passes_slab_of(std::uint32_t n, const Hip& from, const Hip& to) const {
+  const NodeShape& node = specimen_.nodes[n];
+  double begin = 0, end = 1;                            // the part of the way in the slab, so far
+  const auto cut = [&](double at_from, double at_to) {  // to where what goes from one to the other is at most moved_
+    const double above = at_from - moved_, fall = at_from - at_to;
+    if (fall > 0) {
+      begin = std::max(begin, above / fall);
+    } else if (fall < 0) {
+      end = std::min(end, above / fall);
+    } else if (above > 0) {
+      end = -1;
+    }
+  };
+  const double front_from = in_front_of_node(n, from), front_to = in_front_of_node(n, to);
+  cut(front_from, front_to);
+  cut(-front_from, -front_to);
+  for (std::uint32_t k = node.first_side; k < node.first_side + node.side_count; ++k) {
+    const Rim& rim = specimen_.rims[k];
+    const EdgeShape& edge = specimen_.edges[rim.edge];
+    const std::uint32_t across = edge.node[0] == n ? edge.node[1] : edge.node[0];
+    if (edge.type == FDCG_CONCAVE) {
+      cut(-in_front_of_node(across, from), -in_front_of_node(across, to));
+    } else {
+      cut(signed_distance(rim.normal, rim.offset, from), signed_distance(rim.normal, rim.offset, to));
+    }
+  }
+  return begin <= end;
+}
+
 // A contact that was free: what its way met, and what it should have.
 void Judge::look_at_merged_way(Tick& tick) const {
   constexpr int kPlaces = 9;  // looked at on a way through the surface
@@ -28,11 +67,8 @@ void Judge::look_at_merged_way(Tick& tick) const {
   const InsideGrid::Crossing way = solid.crossing(from, tick.hip);
   const bool is_stopped = tick.result.transitions > 0;
   tick.is_way_clear = !way.is_through && !way.touches && !solid.comes_near(from, tick.hip, moved_);
-  // Faces are slabs: their planes lie off the mesh by the deviation, and they are met from as far in front of their planes and
-  // beyond their sides, and at a sharp edge from below (contact-model FREE-3); at a sharp corner such planes meet a few
-  // deviations away. Of 10^7 ticks on bodies of a text file's decimals some ten are met from farther off than moved_, and of
-  // 6 x 10^6 one from farther off than twice that.
-  if (tick.is_way_clear && is_stopped && !solid.comes_near(from, tick.hip, std::max(2 * moved_, deviation_)))
+  const double met_from = std::max(2 * moved_, deviation_);
+  if (tick.is_way_clear && is_stopped && !solid.comes_near(from, tick.hip, met_from) && !passes_slab(from, tick.hip))
     tick.faults |= bit(Fault::thin_air);
   // What is free may be below a merged face's plane by its slab, one deviation, which lies another below the mesh: so far
   // inside a way may run along the face. Of 1.5 x 10^7 ticks on noisy faces two ways do so by 1.5 deviations.
@@ -89,9 +125,21 @@ Hip Judge::outwards(const Tick& tick) const {
   return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
 }
 
+// Whether a god-object may rest there on the mesh, its faces as they are, or so near that merging may have moved it.
+bool Judge::rests_on_mesh(const Tick& tick) const {
+  const auto rests_beside = [&](std::uint32_t corner) {
+    return specimen_.descent->rests_beside(specimen_.corners[corner].point, tick.god_object, moved_, tick.hip);
+  };
+  const std::uint32_t feature = tick.after.feature;
+  if (tick.after.state == FDCG_EDGE)
+    return rests_beside(specimen_.edges[feature].corner[0]) || rests_beside(specimen_.edges[feature].corner[1]);
+  return rests_beside(feature) || descent_at(feature, tick) <= kMostDescent_eps * tick.rounding;
+}
+
 // Whether a hand that an edge or a vertex lets go would be in free air all the way: from in front of the god-object to a place
 // somewhat before it, and on, farther from the mesh than the graph's surface may be. A face holds what is behind it and over
-// it.
+// it. What rests on the mesh as well is right: a groove holds however near to its end the foot of the HIP is, though a step
+// from there the way would be free.
 bool Judge::is_in_merged_air(const Tick& tick) const {
   if (tick.after.state == FDCG_FACE) return false;
   const InsideGrid& solid = *specimen_.inside;
@@ -103,7 +151,7 @@ bool Judge::is_in_merged_air(const Tick& tick) const {
   for (std::size_t i = 0; i < 3; ++i)
     front[i] += before * out[i];
   const InsideGrid::Crossing way = solid.crossing(front, start);  // the solid may be as thin as that
-  return solid.where(front) == InsideGrid::Where::outside && !way.is_through && !way.touches;
+  return solid.where(front) == InsideGrid::Where::outside && !way.is_through && !way.touches && !rests_on_mesh(tick);
 }
 
 }  // namespace fdcg::test

@@ -105,6 +105,43 @@ TEST_CASE("a way from a corner begins where the solid says of places right besid
   CHECK(std::min({told[0], told[1], told[2]}) > 100);
 }
 
+// What the mesh's own faces and edges say of a rest, and what the step does on them.
+TEST_CASE("a rest on a face or an edge is one on the mesh, and a place beside it is none") {
+  int rests[2] = {0, 0};
+  for (std::uint64_t seed = 0; seed < 30; ++seed) {
+    const PolygonSoup soup =
+        rounded_to_float(seed % 3 == 0 ? triangulated(v_groove(1.5), seed) : double_fan(3 + static_cast<int>(seed % 11), seed));
+    const CompiledMesh mesh(soup);
+    const fdcg_graph& graph = mesh.view();
+    const ExactSolid solid(soup, *graph.header);
+    const Descent descent(solid.triangles());
+    Contact contact(graph, contact_params(0, 0));
+    Random random(seed);
+    for (int i = 0; i < 400; ++i) {
+      Hip hip;
+      for (std::size_t k = 0; k < 3; ++k)
+        hip[k] = random.uniform(solid.low()[k], solid.high()[k]) + graph.header->origin[k];
+      contact.step(hip);
+      const bool is_edge = contact.result.state == FDCG_EDGE;
+      if ((!is_edge && contact.result.state != FDCG_FACE) || contact.result.flags != 0) continue;
+      const Hip local = {contact.state.hip[0], contact.state.hip[1], contact.state.hip[2]};
+      const Hip god_object = {contact.state.god_object[0], contact.state.god_object[1], contact.state.god_object[2]};
+      const std::uint32_t corner = is_edge ? fdcg_get_connection(&graph, contact.result.feature).corner[0]
+                                           : fdcg_get_side(&graph, contact.result.feature, 0).corner;
+      const fdcg_corner_info info = fdcg_get_corner(&graph, corner);
+      const Hip point = {info.point[0], info.point[1], info.point[2]};
+      const double near = 1e-9 * graph.header->extent;
+      ++rests[is_edge ? 1 : 0];
+      CHECK(descent.rests_beside(point, god_object, near, local));
+      const Hip beside = {god_object[0] + 2 * near, god_object[1], god_object[2]};
+      CHECK_FALSE(descent.rests_beside(point, beside, near, local));
+      CHECK_FALSE(descent.rests_beside(point, local, near, god_object));
+    }
+  }
+  CHECK(rests[0] > 1000);
+  CHECK(rests[1] > 100);
+}
+
 TEST_CASE("no rest at a corner of a flat or long body that is no least place") {
   Counts counts;
   std::uint64_t seed = 0;
