@@ -73,6 +73,7 @@ class NodeEntry {
     // On a face's plane: a corner of that face and of a neighbour may lie off both planes.
     const double deviation = graph_.max_deviation();
     slab_ = slab_depth(left_.state == FDCG_FACE ? 2 * deviation : deviation, from_bound_);
+    if constexpr (FDCG_WITH_INEXACT_NODES) reach_ = slab_ + (graph_.has_inexact_nodes() ? norm1(from_ - stood_) : Real(0));
   }
 
   // Whether all of the way is known to be over the face that it meets first; not told of one met in a tick before.
@@ -100,7 +101,7 @@ class NodeEntry {
  protected:
   // Of most nodes the way ends in front, or begins behind, by more than rounding could change: those need no call.
   void glance_at_node(uint32_t n) {
-    if (surely_passes(graph_.node(n).plane(), from_, to_, to_bound_, slab_)) {
+    if (surely_passes(graph_.node(n).plane(), from_, to_, to_bound_, FDCG_WITH_INEXACT_NODES ? reach_ : slab_)) {
       spend(work_left_, kGlanceWork);
     } else {
       try_node(n);
@@ -118,6 +119,7 @@ class NodeEntry {
   Feature left_;
   uint32_t* work_left_;
   Real slab_;
+  Real reach_;  // the same, of a node that the god-object was in front of before it stepped clear of what it left
   FirstHit<Real> best_;
 
   // On which side of the line through two corners of a node the way passes: 1 on the outer, where the node's loop runs from the
@@ -177,8 +179,9 @@ class NodeEntry {
     if (lies == Lies::beside) return;
     const Real end_side = side(node, to_, to_bound_);
     if (!(end_side < 0)) return;
-    const Real start_side = side(node, from_, from_bound_);
+    Real start_side = side(node, from_, from_bound_);
     const bool is_slab = graph_.has_inexact_nodes();
+    if (is_slab && start_side < -slab_ && start_side >= -reach_ && distance_from(node, stood_) >= -slab_) start_side = -slab_;
     if (start_side < (is_slab ? -slab_ : Real(0)) && !FDCG_MUTANT("enters-from-behind")) {
       if (start_side >= -from_bound_ && !FDCG_MUTANT("seat")) try_other_wall(n, node);
       return;
@@ -188,9 +191,11 @@ class NodeEntry {
     const Real fall = start_side - end_side, rounded = start_side > 0 ? start_side / fall : Real(0);
     const Real noise = from_bound_ + to_bound_ + (is_slab ? slab_ : Real(0));
     const bool is_grazing = noise > kGrazing<Real> * fall;
-    const Real least = !is_grazing ? rounded : start_side > noise ? (start_side - noise) / fall : Real(0);
+    const bool may_be_beside = is_grazing || is_slab;  // where it meets the plane
+    const Real before = is_grazing ? noise : slab_;    // in front of it
+    const Real least = !may_be_beside ? rounded : start_side > before ? (start_side - before) / fall : Real(0);
     if (!is_before_best(least, n)) return;
-    const Real fraction = is_grazing && !is_over ? part_over(n, rounded, least) : rounded;  // costs less than what follows
+    const Real fraction = may_be_beside && !is_over ? part_over(n, rounded, least) : rounded;  // costs less than what follows
     if (!is_before_best(fraction, n)) return;
     uint64_t met_exactly = 0;
     if (!is_over && !passes_inside(node, rounded, &met_exactly)) {
@@ -425,7 +430,8 @@ class NodeEntry {
 
   // Whether a way that crosses the node's plane at `fraction`, outside of this side by its orientation, may pass inside all the
   // same, where corners lie off their planes. Of a concave side where the way stays in front of the wall that stands there, up
-  // to its slab, and crosses near the side or ends below the node: a way along the groove would pass between the two. Two
+  // to its slab, and crosses near the side or ends below the node: a way along the groove would pass between the two. So it
+  // would if it came over the next wall, from behind this one's plane, and is in front where it crosses near the side. Two
   // planes that lie nearly alike meet farther from their edge than their corners lie off them. Of a convex side where the way
   // does not enter the face across, since it begins behind that one's slab, or leaves what lies behind it, and meets this plane
   // behind that one's: it would pass between the two. Of any other where the loop as it is, sides in line that bend inwards up
@@ -441,9 +447,9 @@ class NodeEntry {
       const NodeRef<Geometry> wall = graph_.node(node.across(k));
       const Real begin = distance_from(wall, from_);
       const bool begins_in_slab = begin >= -slab_;
-      if (type == FDCG_CONVEX
-              ? !(begins_in_slab && (begin >= 0 || !left_lies_behind(wall))) && distance_from(wall, point) < 0
-              : begins_in_slab && distance_from(wall, to_) >= 0 && (is_near || distance_beyond(node, k, to_) <= 0))
+      if (type == FDCG_CONVEX ? !(begins_in_slab && (begin >= 0 || !left_lies_behind(wall))) && distance_from(wall, point) < 0
+                              : (begins_in_slab || (is_near && distance_from(wall, point) >= 0)) &&
+                                    distance_from(wall, to_) >= 0 && (is_near || distance_beyond(node, k, to_) <= 0))
         return true;
     }
     *must_wind = true;

@@ -46,12 +46,13 @@ class Trail {
   [[nodiscard]] bool has_come_nearer() const { return has_come_nearer_; }
   // A feature has let the god-object go.
   void let_go() { was_let_go_ = true; }
-  // Whether the circle leads through free space, past faces, and the HIP is clearly over none of them. Faces that move may have
-  // been squeezed to lines, which are under nothing.
+  // Whether the circle leads through free space, past faces, and the HIP is clearly over none of them; or past edges alone,
+  // each of which lets go. Faces that move may have been squeezed to lines, which are under nothing.
   [[nodiscard, gnu::noinline, gnu::cold]] bool passes_hip_by(const Walk<Geometry>& walk) const {
     if (!Geometry::kKeepsDirections || !was_let_go_) return false;
-    bool is_beside = false;
+    bool is_beside = false, are_edges = walk.graph.has_inexact_nodes();
     for (int i = 0; i < count_; ++i) {
+      are_edges = are_edges && visited_[i] >> 32 == FDCG_EDGE;
       if (visited_[i] >> 32 != FDCG_FACE) continue;
       const NodeRef<Geometry> node = walk.graph.node(static_cast<uint32_t>(visited_[i]));
       is_beside = false;
@@ -59,7 +60,7 @@ class Trail {
         is_beside = is_beside || distance_beyond(node, k, walk.hip) > walk.hip_bound;
       if (!is_beside) return false;
     }
-    return is_beside;
+    return is_beside || are_edges;
   }
   // Where hops have led to the start, over this edge, which was nearer than all before.
   void begin_nearer(Feature edge) {
@@ -162,6 +163,13 @@ inline bool is_shorter(const Vec3<Real>& a, const Vec3<Real>& b) {
   return dot(a, a) < dot(b, b);
 }
 
+template <class Geometry>
+inline void let_go_to_hip(Walk<Geometry>& walk, FreeSpace* space) {
+  space->inner->sweep.stalled_sweeps = 0;
+  walk.place(walk.hip, kFree);
+  walk.active = kFree;
+}
+
 // Drives the rules until one rests, from where the contact stands (`decision` null) or from what its feature's rule has already
 // decided. It stood on `start` then, `start_gap` away from the HIP; `hopped`: the edge over which hops led there, or kFree.
 template <class Geometry, class Real = typename Geometry::Real>
@@ -218,9 +226,7 @@ Progress move_god_object(Walk<Geometry>& walk, Feature start, Vec3<Real> start_g
     if (!FDCG_MUTANT("met-again") && trail.has_met_again(walk) && !goes_on_at_corner(walk, &trail) &&
         !trail.begins_again(walk)) {
       if (trail.passes_hip_by(walk)) {
-        space->inner->sweep.stalled_sweeps = 0;
-        walk.place(walk.hip, kFree);
-        walk.active = kFree;
+        let_go_to_hip(walk, space);
         return progress;
       }
       // Of a face and an edge the face pulls; a shaded one pulls another way than its plane does.
@@ -241,7 +247,12 @@ Progress move_god_object(Walk<Geometry>& walk, Feature start, Vec3<Real> start_g
       uint16_t* const stalled = &space->inner->sweep.stalled_ticks;
       const bool gets_on = is_shorter(gap, begun) || (!is_held && !is_at_start);
       *stalled = static_cast<uint16_t>(gets_on ? 0 : *stalled + (*stalled < most));
-      if (gets_on || (*stalled < most && !is_at_start)) progress.flags |= FDCG_RESULT_TRANSITION_BOUND;
+      if (gets_on || (*stalled < most && !is_at_start)) {
+        progress.flags |= FDCG_RESULT_TRANSITION_BOUND;
+      } else if (walk.graph.has_inexact_nodes() &&
+                 trail.passes_hip_by(walk)) {  // a circle of merged faces may take all the work
+        let_go_to_hip(walk, space);
+      }
       return progress;
     }
   }
