@@ -60,7 +60,7 @@ FrictionTerms terms_of(const fdcg_params& params, const fdcg_graph* graph, const
 
 // On an edge, `across` from the foot to the HIP is -(load_a n_a + load_b n_b) and something along the edge; load_a's share. The
 // sum of the loads is -2 S.across / S.S with S = n_a + n_b (contact-model EDGE-4), their difference the same with n_a - n_b.
-inline double share_of_load(Vec3<double> n_a, Vec3<double> n_b, Vec3<double> across) {
+[[gnu::cold]] inline double share_of_load(Vec3<double> n_a, Vec3<double> n_b, Vec3<double> across) {
   const Vec3<double> sum = n_a + n_b, difference = n_a - n_b;
   const double both = dot(sum, across) * dot(difference, difference), more = dot(difference, across) * dot(sum, sum);
   if (!(both < 0)) return 0.5;

@@ -73,7 +73,7 @@ class NodeEntry {
     // On a face's plane: a corner of that face and of a neighbour may lie off both planes.
     const double deviation = graph_.max_deviation();
     slab_ = slab_depth(left_.state == FDCG_FACE ? 2 * deviation : deviation, from_bound_);
-    if constexpr (FDCG_WITH_INEXACT_NODES) reach_ = slab_ + (graph_.has_inexact_nodes() ? norm1(from_ - stood_) : Real(0));
+    if constexpr (FDCG_WITH_INEXACT_NODES) glance_slab_ = graph_.has_inexact_nodes() ? 4 * slab_ : slab_;
   }
 
   // Whether all of the way is known to be over the face that it meets first; not told of one met in a tick before.
@@ -101,7 +101,7 @@ class NodeEntry {
  protected:
   // Of most nodes the way ends in front, or begins behind, by more than rounding could change: those need no call.
   void glance_at_node(uint32_t n) {
-    if (surely_passes(graph_.node(n).plane(), from_, to_, to_bound_, FDCG_WITH_INEXACT_NODES ? reach_ : slab_)) {
+    if (surely_passes(graph_.node(n).plane(), from_, to_, to_bound_, FDCG_WITH_INEXACT_NODES ? glance_slab_ : slab_)) {
       spend(work_left_, kGlanceWork);
     } else {
       try_node(n);
@@ -119,7 +119,7 @@ class NodeEntry {
   Feature left_;
   uint32_t* work_left_;
   Real slab_;
-  Real reach_;  // the same, of a node that the god-object was in front of before it stepped clear of what it left
+  Real glance_slab_;  // so far behind a node the god-object may be that was in front of it before it stepped clear
   FirstHit<Real> best_;
 
   // On which side of the line through two corners of a node the way passes: 1 on the outer, where the node's loop runs from the
@@ -181,7 +181,7 @@ class NodeEntry {
     if (!(end_side < 0)) return;
     Real start_side = side(node, from_, from_bound_);
     const bool is_slab = graph_.has_inexact_nodes();
-    if (is_slab && start_side < -slab_ && start_side >= -reach_ && distance_from(node, stood_) >= -slab_) start_side = -slab_;
+    if (is_slab && start_side < -slab_ && stood_in_front_of(node)) start_side = -slab_;
     if (start_side < (is_slab ? -slab_ : Real(0)) && !FDCG_MUTANT("enters-from-behind")) {
       if (start_side >= -from_bound_ && !FDCG_MUTANT("seat")) try_other_wall(n, node);
       return;
@@ -244,6 +244,10 @@ class NodeEntry {
   [[nodiscard, gnu::noinline, gnu::cold]] bool ends_in_air_beyond(NodeRef<Geometry> node, uint32_t k) const {
     return graph_.connection(node.connection(k)).type() == FDCG_CONVEX &&
            distance_from(graph_.node(node.across(k)), to_) > slab_;
+  }
+  // Whether the god-object was in front of a node, or in its slab, before it stepped clear of what it left.
+  [[nodiscard, gnu::noinline, gnu::cold]] bool stood_in_front_of(NodeRef<Geometry> node) const {
+    return distance_from(node, stood_) >= -slab_;
   }
   // Of a way that begins behind a plane by no more than the slab: whether that is not over the node, but in the air beside it,
   // or below a wall that stands at its side, from where it does not come in front of the node.

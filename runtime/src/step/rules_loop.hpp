@@ -39,7 +39,7 @@ class Trail {
     for (int i = 0; i < count_; ++i) {
       if (visited_[i] == key(feature)) return false;
     }
-    if (count_ == kCapacity) count_ = 0;
+    count_ &= kCapacity - 1;  // begins anew
     visited_[count_++] = key(feature);
     return true;
   }
