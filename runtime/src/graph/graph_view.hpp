@@ -325,7 +325,7 @@ FDCG_ONE_COPY Real distance_beyond(NodeRef<Geometry> node, uint32_t k, const Vec
 
 // The sign of x against the plane through the first three corners of an exactly planar node.
 template <class Geometry, class Real = typename Geometry::Real>
-[[gnu::noinline, gnu::cold]] int exact_side_sign(const GraphView<Geometry>& graph, NodeRef<Geometry> node, const Vec3<Real>& x,
+[[gnu::noinline]] int exact_side_sign(const GraphView<Geometry>& graph, NodeRef<Geometry> node, const Vec3<Real>& x,
                                                  uint32_t* work_left) {
   Vec3<Real> corner[3];
   for (uint32_t k = 0; k < 3; ++k) {

@@ -194,10 +194,10 @@ inline Feature next_from_corner(Walk<Geometry>& walk, CornerRef<Geometry> corner
   const Feature found = search.best.feature;
   if (walk.graph.has_inexact_nodes()) {  // what CORNER-4 says is not exact
     const Real noise = slab_depth(2 * walk.graph.max_deviation(), walk.hip_bound);
-    const bool is_apex = found.is_free() && search.lost2 == 2 * search.half_t2;  // and nothing else leads nearer
+    const bool is_apex = found.is_free() && search.lost2 == search.best.distance2;  // nothing else leads nearer
+    if (is_apex && dot(t, corner.normal()) > noise) return kFree;
     const Real share = found.is_free() ? kNearerThanApex2<Real> : kClearlyNearer2<Real>;
-    const bool has_lost_nearer = search.lost2 < share * search.best.distance2 && search.best.distance2 > square(noise);
-    if (is_apex ? dot(t, corner.normal()) > noise : has_lost_nearer) return kFree;
+    if (search.lost2 < share * search.best.distance2 && search.best.distance2 > square(noise)) return kFree;
   }
   if (is_inside) return found.is_free() ? walk.active : found;
   if (found.is_free()) {

@@ -73,7 +73,7 @@ class NodeEntry {
     // On a face's plane: a corner of that face and of a neighbour may lie off both planes.
     const double deviation = graph_.max_deviation();
     slab_ = slab_depth(left_.state == FDCG_FACE ? 2 * deviation : deviation, from_bound_);
-    if constexpr (FDCG_WITH_INEXACT_NODES) glance_slab_ = graph_.has_inexact_nodes() ? 4 * slab_ : slab_;
+    if constexpr (FDCG_WITH_INEXACT_NODES) glance_slab_ = slab_ + 3 * Real(deviation);
   }
 
   // Whether all of the way is known to be over the face that it meets first; not told of one met in a tick before.
@@ -192,8 +192,7 @@ class NodeEntry {
     const Real noise = from_bound_ + to_bound_ + (is_slab ? slab_ : Real(0));
     const bool is_grazing = noise > kGrazing<Real> * fall;
     const bool may_be_beside = is_grazing || is_slab;  // where it meets the plane
-    const Real before = is_grazing ? noise : slab_;    // in front of it
-    const Real least = !may_be_beside ? rounded : start_side > before ? (start_side - before) / fall : Real(0);
+    const Real least = !may_be_beside ? rounded : start_side > noise ? (start_side - noise) / fall : Real(0);
     if (!is_before_best(least, n)) return;
     const Real fraction = may_be_beside && !is_over ? part_over(n, rounded, least) : rounded;  // costs less than what follows
     if (!is_before_best(fraction, n)) return;
@@ -449,11 +448,11 @@ class NodeEntry {
     const uint32_t type = graph_.connection(node.connection(k)).type();
     if (type == FDCG_CONCAVE || (is_near && type == FDCG_CONVEX)) {
       const NodeRef<Geometry> wall = graph_.node(node.across(k));
-      const Real begin = distance_from(wall, from_);
+      const Real begin = distance_from(wall, from_), crosses = distance_from(wall, point);
       const bool begins_in_slab = begin >= -slab_;
-      if (type == FDCG_CONVEX ? !(begins_in_slab && (begin >= 0 || !left_lies_behind(wall))) && distance_from(wall, point) < 0
-                              : (begins_in_slab || (is_near && distance_from(wall, point) >= 0)) &&
-                                    distance_from(wall, to_) >= 0 && (is_near || distance_beyond(node, k, to_) <= 0))
+      if (type == FDCG_CONVEX ? !(begins_in_slab && (begin >= 0 || !left_lies_behind(wall))) && crosses < 0
+                              : (begins_in_slab || (is_near && crosses >= 0)) && distance_from(wall, to_) >= 0 &&
+                                    (is_near || distance_beyond(node, k, to_) <= 0))
         return true;
     }
     *must_wind = true;

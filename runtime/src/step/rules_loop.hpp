@@ -164,7 +164,7 @@ inline bool is_shorter(const Vec3<Real>& a, const Vec3<Real>& b) {
 }
 
 template <class Geometry>
-inline void let_go_to_hip(Walk<Geometry>& walk, FreeSpace* space) {
+FDCG_OUTLINED void let_go_to_hip(Walk<Geometry>& walk, FreeSpace* space) {
   space->inner->sweep.stalled_sweeps = 0;
   walk.place(walk.hip, kFree);
   walk.active = kFree;
