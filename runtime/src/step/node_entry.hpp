@@ -73,6 +73,7 @@ class NodeEntry {
     // On a face's plane: a corner of that face and of a neighbour may lie off both planes.
     const double deviation = graph_.max_deviation();
     slab_ = slab_depth(left_.state == FDCG_FACE ? 2 * deviation : deviation, from_bound_);
+    // A step clear is of one deviation, at a concave edge of one for each face.
     if constexpr (FDCG_WITH_INEXACT_NODES) glance_slab_ = slab_ + 3 * Real(deviation);
   }
 
