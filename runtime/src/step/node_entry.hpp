@@ -438,14 +438,16 @@ class NodeEntry {
   // would if it came over the next wall, from behind this one's plane, and is in front where it crosses near the side. Two
   // planes that lie nearly alike meet farther from their edge than their corners lie off them. Of a convex side where the way
   // does not enter the face across, since it begins behind that one's slab, or leaves what lies behind it, and meets this plane
-  // behind that one's: it would pass between the two. Of any other where the loop as it is, sides in line that bend inwards up
+  // behind that one's: it would pass between the two. Of a side within one plane where it crosses that on the inner side: the
+  // side's corners need not lie in it. Of any other where the loop as it is, sides in line that bend inwards up
   // to rounding error included, winds about the way: that is still to be asked, once for all sides.
   [[nodiscard, gnu::noinline, gnu::cold]] bool is_open(NodeRef<Geometry> node, uint32_t k, Real fraction,
                                                        bool* must_wind) const {
     if (!graph_.has_inexact_nodes()) return false;
     spend(work_left_, kNodeWork);
     const Vec3<Real> point = point_at(fraction);
-    const bool is_near = distance_beyond(node, k, point) <= slab_;
+    const Real beyond = distance_beyond(node, k, point);
+    const bool is_near = beyond <= slab_;
     const uint32_t type = graph_.connection(node.connection(k)).type();
     if (type == FDCG_CONCAVE || (is_near && type == FDCG_CONVEX)) {
       const NodeRef<Geometry> wall = graph_.node(node.across(k));
@@ -456,6 +458,7 @@ class NodeEntry {
                                     (is_near || distance_beyond(node, k, to_) <= 0))
         return true;
     }
+    if (type == FDCG_COPLANAR && beyond <= 0) return true;
     *must_wind = true;
     return is_near && node.is_inexact();
   }
