@@ -126,7 +126,7 @@ struct LongWing {
       : left(way(corner, wing.first)), right(way(corner, wing.second)), normal(cross(left, right)) {}
 };
 
-// Whether a way of the god-object from a corner to its foot is as long as to `place`, but for `so_near`.
+// Whether a foot and a place, both from the corner, are no farther apart than that.
 bool is_near(const Long& foot, const Long& place, double so_near) {
   const Long apart = {foot[0] - place[0], foot[1] - place[1], foot[2] - place[2]};
   return dot(apart, apart) <= static_cast<long double>(so_near) * so_near;

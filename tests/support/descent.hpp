@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether a corner or an edge of a solid is where a god-object without friction may rest, from the source triangles alone. Of a
-// corner, the directions that leave it without entering the solid are a cone, and none of them may lead nearer to the HIP.
-// Written apart from the step: no Voronoi planes, no search by features, and at a corner the one decision that rounding could
-// turn is made in exact numbers.
+// Whether a corner of a solid, or an edge or a face there, is where a god-object without friction may rest, from the source
+// triangles alone. Of a corner, the directions that leave it without entering the solid are a cone, and none of them may lead
+// nearer to the HIP. Written apart from the step: no Voronoi planes, no search by features, and at a corner the one decision
+// that rounding could turn is made in exact numbers.
 #pragma once
 
 #include <array>

@@ -326,7 +326,7 @@ FDCG_ONE_COPY Real distance_beyond(NodeRef<Geometry> node, uint32_t k, const Vec
 // The sign of x against the plane through the first three corners of an exactly planar node.
 template <class Geometry, class Real = typename Geometry::Real>
 [[gnu::noinline]] int exact_side_sign(const GraphView<Geometry>& graph, NodeRef<Geometry> node, const Vec3<Real>& x,
-                                                 uint32_t* work_left) {
+                                      uint32_t* work_left) {
   Vec3<Real> corner[3];
   for (uint32_t k = 0; k < 3; ++k) {
     const Vec3<Real> v = corner[k] = graph.corner_point(node.spanning_corner(k));
