@@ -120,9 +120,11 @@ uint64_t block_sum(const unsigned char* data, uint64_t bytes) {
   memcpy(four[1], start, sizeof start);
   for (uint64_t at = 0; at < kChecksumBlock; at += kStripe) {
     const unsigned char* const stripes[2] = {data + at, data + kChecksumBlock + at};
+    // Of the next two blocks, in the order of memory: that is how processors fetch most at once.
+    prefetch_stripe(data + 2 * (kChecksumBlock + at));
+    prefetch_stripe(data + 2 * (kChecksumBlock + at) + kStripe);
 #pragma GCC unroll 2
     for (int block = 0; block < 2; ++block) {
-      prefetch_stripe(stripes[block] + 2 * kAhead);
 #pragma GCC unroll 4
       for (int i = 0; i < kFours; ++i) {
         const __m256i words = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(stripes[block] + 32 * i));
