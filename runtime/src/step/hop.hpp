@@ -52,14 +52,17 @@ FDCG_HOT bool hop_over(const GraphView<Geometry>& graph, const Vec3<Real>& hip, 
   const NodeRef<Geometry> here = graph.node(hop->node);
   const uint32_t k = hop->move.crossing.local_side;
   const fdcg_side& crossed = here.side(k);
+  __builtin_prefetch(&graph.connections()[crossed.link >> 1]);  // for an edge that keeps it
   if (crossed.across == FDCG_NONE) return false;
   const NodeRef<Geometry> there = graph.node(crossed.across);
+  // What the next crossing reads. Of a triangle one side is where this one began, at hand already; to leave it out would be to
+  // wait for which it is.
+#pragma GCC unroll 3
+  for (uint32_t j = 0; j < graph.kPrefetchedSides; ++j)
+    graph.prefetch_plainly(there.side(j));
   const Real side = there.plane().distance(hip);
   const uint32_t back = there.side_of_link(crossed.link ^ 1u);
   if (back >= there.side_count()) return false;
-  graph.prefetch_plainly(
-      there.side(there.next(back)));  // for the next crossing, of a triangle: the third is where this one began
-  graph.prefetch_plainly(there.side(there.previous(back)));
   const bool goes_over =
       (side < -bound && there.stored_plane(back).distance(hip) < 0 && here.stored_plane(k).distance(hip) >= 0) ||
       FDCG_MUTANT("hops-anywhere");
