@@ -4,6 +4,8 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <numeric>
+#include <random>
 
 #include "instruction_count.hpp"
 
@@ -154,9 +156,13 @@ std::vector<Timing> time_all(const std::vector<Contender*>& entrants, const Way&
   std::vector<Timing> timings(entrants.size());
   std::vector<std::vector<float>> met(entrants.size(), std::vector<float>(static_cast<std::size_t>(rounds) * way.size()));
   std::vector<std::vector<float>> batch(entrants.size());
+  std::vector<std::size_t> order(entrants.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::mt19937 generator(1);
   for (int round = 0; round < rounds; ++round) {
-    for (std::size_t k = 0; k < entrants.size(); ++k) {
-      const std::size_t e = (k + static_cast<std::size_t>(round)) % entrants.size();
+    // Drawn anew: a contender that always follows one with the same code finds the processor's guesses made.
+    std::shuffle(order.begin(), order.end(), generator);
+    for (const std::size_t e : order) {
       batch[e].push_back(static_cast<float>(clock.way(*entrants[e], way) / ticks));
       time_ticks(*entrants[e], way, clock, met[e].data() + static_cast<std::size_t>(round) * way.size());
     }
