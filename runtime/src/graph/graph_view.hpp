@@ -265,6 +265,14 @@ struct GraphView : Geometry {
     __builtin_prefetch(block + kBytes - 1);
   }
 
+  // What a crossing from a node of a plain graph reads. Of a triangle one side is where the god-object came in, at hand
+  // already: to leave it out would be to wait for which it is.
+  FDCG_HOT void prefetch_beyond(NodeRef<Geometry> node) const {
+#pragma GCC unroll 3
+    for (uint32_t k = 0; k < kPrefetchedSides; ++k)
+      prefetch_plainly(node.side(k));
+  }
+
   // Calls visit(FanEntry) for each entry of a corner's fan, counter-clockwise seen from outside. Busy corners have long ones.
   template <class Visit>
   void for_each_in_fan(CornerRef<Geometry> corner, Visit&& visit) const {
