@@ -88,8 +88,8 @@ inline bool is_in_new_ball(const GraphView<Geometry>& graph, const Vec3<Real>& f
   if (radius > 2 * way) {  // it holds the next tick's way too
     ball->wait = ball->next_wait = 0;
   } else {
-    ball->wait = ball->next_wait;
     ball->next_wait = static_cast<uint16_t>(ball->next_wait < kLongestWait ? 2 * ball->next_wait + 1 : kLongestWait);
+    ball->wait = ball->next_wait;
   }
   if (!is_found) {
     end_clear_ball(ball);
