@@ -266,11 +266,14 @@ struct GraphView : Geometry {
   }
 
   // What a crossing from a node of a plain graph reads. Of a triangle one side is where the god-object came in, at hand
-  // already: to leave it out would be to wait for which it is.
-  FDCG_HOT void prefetch_beyond(NodeRef<Geometry> node) const {
+  // already: to leave it out would be to wait for which it is. One copy, whose calls GCC keeps for the statement that does
+  // nothing.
+  [[gnu::noinline]] void prefetch_beyond(uint32_t n) const {
+    const NodeRef<Geometry> here = node(n);
 #pragma GCC unroll 3
     for (uint32_t k = 0; k < kPrefetchedSides; ++k)
-      prefetch_plainly(node.side(k));
+      prefetch_plainly(here.side(k));
+    __asm__ volatile("");
   }
 
   // Calls visit(FanEntry) for each entry of a corner's fan, counter-clockwise seen from outside. Busy corners have long ones.

@@ -54,7 +54,7 @@ FDCG_HOT void call_ahead(const GraphView<Geometry>& graph, NodeRef<Geometry> nod
   if (glance.kind != FaceMoveKind::nears || !graph.is_plain()) return;
   const uint32_t across = node.side(glance.near_side).across;
   if (across == FDCG_NONE) return;
-  graph.prefetch_beyond(graph.node(across));
+  graph.prefetch_beyond(across);
   hop->called = across;
 }
 
@@ -68,7 +68,7 @@ FDCG_HOT bool hop_over(const GraphView<Geometry>& graph, const Vec3<Real>& hip, 
   __builtin_prefetch(&graph.connections()[crossed.link >> 1]);  // for an edge that keeps it
   if (crossed.across == FDCG_NONE) return false;
   const NodeRef<Geometry> there = graph.node(crossed.across);
-  if (crossed.across != hop->called) graph.prefetch_beyond(there);
+  if (crossed.across != hop->called) graph.prefetch_beyond(crossed.across);
   const Real side = there.plane().distance(hip);
   const uint32_t back = there.side_of_link(crossed.link ^ 1u);
   if (back >= there.side_count()) return false;
