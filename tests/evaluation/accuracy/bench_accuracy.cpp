@@ -215,7 +215,8 @@ std::string kind_of(const std::string& precision, Judge judge, double offset_siz
 }
 
 // Where faces were merged that are flat only within the input's quantum, the file says how far corners are off the planes, and
-// exactness ends there: such a run's errors are held against that.
+// exactness ends there: such a run's errors are held against that. Where that is a matter of ulps, what they exceed it by is
+// held to the bars of all runs.
 bool has_deviation(const AccuracyOutcome& outcome) {
   return outcome.deviation_ulps > kMaxBar_ulps;
 }
@@ -499,7 +500,8 @@ void add(Total& total, const AccuracySetting& s, const AccuracyOutcome& o) {
     return;
   }
   Group& group = total.groups[{s.body, s.way}];
-  append(group.one_step, o.one_step_ulps);
+  for (const float ulps : o.one_step_ulps)
+    group.one_step.push_back(std::max(0.0F, ulps - static_cast<float>(o.deviation_ulps)));
   append(group.accumulated, o.accumulated_ulps);
   group.contact_steps += o.contact_steps;
   group.at_rim += o.at_rim_ulps.size();
