@@ -62,6 +62,7 @@ def take(folder):
     KEPT.mkdir(exist_ok=True)
     rows = [{**more[r["body"], r["contender"]], **r} for r in pareto.rows]
     write(KEPT / "pareto.csv", columns, rows)
+    write(KEPT / "pareto.csv", columns, judged_anew(kept()))
     write(KEPT / "nearest.csv", BESIDE, [r for r in contenders.rows if r["contender"] in (OURS, NEAREST)])
     write(KEPT / "god_object_error_histogram.csv", histogram.columns, histogram.rows)
     environment = json.loads((pathlib.Path(folder) / "environment.json").read_text(encoding="utf-8"))
@@ -78,6 +79,16 @@ def write(path, columns, rows):
 def kept():
     """Rows of the frontier; the rows of NEAREST beside ours are read where they are needed."""
     return read_table(KEPT / "pareto.csv").rows
+
+
+def judged_anew(rows):
+    """With the frontier of the rounded figures, which a hair may decide otherwise than the measured ones."""
+    for body in {r["body"] for r in rows}:
+        own = [r for r in rows if r["body"] == body]
+        best = frontier.frontier(own)
+        for row in own:
+            row["on_frontier"] = "yes" if row in best else "no"
+    return rows
 
 
 def of_size(rows, contender, size):

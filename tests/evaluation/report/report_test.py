@@ -269,6 +269,10 @@ class OfPublished(unittest.TestCase):
         done = frontier_of(self.publish.KEPT)
         self.assertEqual(0, done.returncode, done.stderr)
 
+    def test_a_hair_between_rounded_figures_is_judged_anew(self):
+        rows = [{"body": "ball", "god_object_rms_m": 1e-9, "mean_ns": ns, "resolution": 0.02886, "on_frontier": "yes"} for ns in (27.69, 28.49)]
+        self.assertEqual(["yes", "no"], [r["on_frontier"] for r in self.publish.judged_anew(rows)])
+
     def test_what_they_were_measured_on_is_kept(self):
         known = json.loads((self.publish.KEPT / "environment.json").read_text(encoding="utf-8"))
         self.assertTrue({"processor", "compiler", "load_before", "revision"} <= set(known))
