@@ -50,6 +50,11 @@ double resolution_of(const std::vector<Contender*>& entrants, const std::vector<
   return std::min(seen, kCoarsest);
 }
 
+constexpr const char* kOurs = "fdcg";  // the family
+bool is_f32(const Standing& standing) {
+  return standing.name.find("f32") != std::string::npos;
+}
+
 // So many ticks of true contact, evenly.
 std::vector<std::uint32_t> ticks_in_contact(const std::vector<TrueBody::Tick>& truth, std::size_t wanted) {
   std::vector<std::uint32_t> contact, chosen;
@@ -325,7 +330,7 @@ std::vector<float> Evaluation::run_contender(const Scene& scene, const WayPlan& 
     unjudged_share_ = row.metrics.unjudged_share;
     unjudged_at_ = info.name + " on " + scene.body.name + ", " + along.way;
   }
-  if (info.family == "fdcg") {
+  if (info.family == kOurs) {
     const std::string where = info.name + " on " + scene.body.name + ", " + along.way;
     faults_.add(where, row.metrics, row.creep_m, row.energy);
     const double tied = row.metrics.tied_share - row.metrics.equal_share;
@@ -354,31 +359,41 @@ void Evaluation::rank_body(const Scene& scene, const Entrants& entrants, const M
   }
   constexpr double kFloor_m = kBody_m * 0x1p-53;  // a unit in the last place of the body: less is no error
   rank(standings, resolution, kFloor_m);
-  int variants[2] = {0, 0}, on_frontier[2] = {0, 0};  // of f64 and f32; there may be none of one (--contender)
+  int on_frontier[2] = {0, 0};  // of f64 and f32
   double best_ns[2] = {1e300, 1e300};
-  std::string beaten[2];
   for (const Standing& s : standings) {
     pareto_.row(body.name, name_of(body.group), body.faces, s.name, s.family, s.time_ns, s.cold_ns, s.error_m, s.bytes_per_face,
                 s.bake_s, s.is_on_frontier ? "yes" : "no", s.beaten_by, resolution, seeds, measured.ticks);
-    if (s.family != "fdcg") continue;
-    const std::size_t which = s.name.find("f32") != std::string::npos;
-    ++variants[which];
-    on_frontier[which] += s.is_on_frontier;
-    best_ns[which] = std::min(best_ns[which], s.time_ns);
-    if (!s.is_on_frontier) beaten[which] += ", " + s.name + " by " + s.beaten_by;
+    if (s.family != kOurs) continue;
+    on_frontier[is_f32(s)] += s.is_on_frontier;
+    best_ns[is_f32(s)] = std::min(best_ns[is_f32(s)], s.time_ns);
   }
-  const double ratio = variants[0] > 0 && variants[1] > 0 ? best_ns[1] / best_ns[0] : std::numeric_limits<double>::quiet_NaN();
-  const std::string others = where_others_win(standings, "fdcg");
+  const bool has_both = best_ns[0] < 1e300 && best_ns[1] < 1e300;  // there may be none of one (--contender)
+  const double ratio = has_both ? best_ns[1] / best_ns[0] : std::numeric_limits<double>::quiet_NaN();
+  const std::string others = where_others_win(standings, kOurs);
   verdict_.row(body.name, body.faces, on_frontier[0], on_frontier[1], ratio, resolution, others);
   std::printf("  where others are better: %s\n", others.empty() ? "nowhere" : others.c_str());
   if (!options_.judges_times) return;
-  for (const std::size_t which : {0, 1}) {
-    if (variants[which] == 0) continue;
+  for (const bool is_f32_judged : {false, true}) {
+    std::vector<Standing> rivals;  // and ours of one precision: what f64 takes is no bar for f32
+    for (const Standing& s : standings) {
+      if (s.family != kOurs || is_f32(s) == is_f32_judged) rivals.push_back(s);
+    }
+    rank(rivals, resolution, kFloor_m);
+    int variants = 0, unbeaten = 0;
+    std::string beaten;
+    for (const Standing& s : rivals) {
+      if (s.family != kOurs) continue;
+      ++variants;
+      unbeaten += s.is_on_frontier;
+      if (!s.is_on_frontier) beaten += ", " + s.name + " by " + s.beaten_by;
+    }
+    if (variants == 0) continue;
     char note[160];
     std::snprintf(note, sizeof note, "f32 takes %.3f of f64's time, told apart from %.1f %%", ratio, 100 * resolution);
-    bars_.at_least((which == 0 ? "f64 variants on the frontier, " : "f32 variants on the frontier, ") + body.name,
-                   on_frontier[which], 1, "variants",
-                   on_frontier[which] > 0 ? note : std::string(note).append("; beaten: ").append(beaten[which], 2));
+    bars_.at_least(
+        (is_f32_judged ? "f32 variants that no other method beats, " : "f64 variants that no other method beats, ") + body.name,
+        unbeaten, 1, "variants", unbeaten > 0 ? note : std::string(note).append("; beaten: ").append(beaten, 2));
   }
 }
 
