@@ -265,10 +265,9 @@ struct GraphView : Geometry {
     __builtin_prefetch(block + kBytes - 1);
   }
 
-  // What a crossing from a node of a plain graph reads. Of a triangle one side is where the god-object came in, at hand
-  // already: to leave it out would be to wait for which it is. One copy, whose calls GCC keeps for the statement that does
-  // nothing.
-  [[gnu::noinline]] void prefetch_beyond(uint32_t n) const {
+  // The same of all sides of a triangle in a plain graph. One of them is where the god-object came in, and at hand already; to
+  // leave it out would be to wait until it is known which. Without the empty statement GCC 12 would drop the calls.
+  [[gnu::noinline]] void prefetch_neighbours_of(uint32_t n) const {
     const NodeRef<Geometry> here = node(n);
 #pragma GCC unroll 3
     for (uint32_t k = 0; k < kPrefetchedSides; ++k)

@@ -17,7 +17,7 @@ inline constexpr uint32_t kHopWork = 2 * kTransitionWork + kEdgeWork;
 template <class Real>
 struct Hop {
   uint32_t node;
-  uint32_t called;       // beyond whose sides all has been called into the cache
+  uint32_t prefetched;   // the node around which all has been prefetched
   uint32_t edge;         // the last that it went over
   uint32_t transitions;  // 0: none yet
   bool is_on_edge;       // where it stays
@@ -46,16 +46,16 @@ template <class Geometry, class Real = typename Geometry::Real>
   return true;
 }
 
-// Calls into the cache what lies beyond the face beyond the side that a move comes near, before it is looked at closely.
+// Prefetches what a second crossing of this tick would read, before it is sure that there is a first.
 template <class Geometry, class Real = typename Geometry::Real>
-FDCG_HOT void call_ahead(const GraphView<Geometry>& graph, NodeRef<Geometry> node, const FaceGlance<Real>& glance,
-                         Hop<Real>* hop) {
-  hop->called = FDCG_NONE;
+FDCG_HOT void prefetch_ahead(const GraphView<Geometry>& graph, NodeRef<Geometry> node, const FaceGlance<Real>& glance,
+                             Hop<Real>* hop) {
+  hop->prefetched = FDCG_NONE;
   if (glance.kind != FaceMoveKind::nears || !graph.is_plain()) return;
   const uint32_t across = node.side(glance.near_side).across;
   if (across == FDCG_NONE) return;
-  graph.prefetch_beyond(across);
-  hop->called = across;
+  graph.prefetch_neighbours_of(across);
+  hop->prefetched = across;
 }
 
 // Goes over the side that the move on its face meets (contact-model FACE-6, EDGE-1), and stands before the face beyond. False:
@@ -68,7 +68,7 @@ FDCG_HOT bool hop_over(const GraphView<Geometry>& graph, const Vec3<Real>& hip, 
   __builtin_prefetch(&graph.connections()[crossed.link >> 1]);  // for an edge that keeps it
   if (crossed.across == FDCG_NONE) return false;
   const NodeRef<Geometry> there = graph.node(crossed.across);
-  if (crossed.across != hop->called) graph.prefetch_beyond(crossed.across);
+  if (crossed.across != hop->prefetched) graph.prefetch_neighbours_of(crossed.across);
   const Real side = there.plane().distance(hip);
   const uint32_t back = there.side_of_link(crossed.link ^ 1u);
   if (back >= there.side_count()) return false;

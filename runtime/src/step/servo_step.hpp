@@ -312,7 +312,7 @@ inline bool hops_off_edge(const GraphView<Geometry>& graph, const Vec3<Real>& hi
   const NodeRef<Geometry> node = graph.node(face);
   spend(&hop->work_left, kEdgeWork + kTransitionWork + kSideWork * node.side_count());
   hop->node = face;
-  hop->called = FDCG_NONE;
+  hop->prefetched = FDCG_NONE;
   hop->side = distance_from(node, hip);
   hop->transitions = 1;
   hop_to_hip(graph, hip, bound, false, hop);
@@ -341,7 +341,7 @@ FDCG_OUTLINED void step_on(const fdcg_graph& raw, const fdcg_params& params, con
   if (has_move) {
     const NodeRef<Geometry> node = graph.node(contact->feature);
     if constexpr (kGlances) {
-      if constexpr (kHasHops<Geometry>) call_ahead(graph, node, tick->glance, &hop);
+      if constexpr (kHasHops<Geometry>) prefetch_ahead(graph, node, tick->glance, &hop);
       hop.friction.is_slipping = tick->is_slipping;
       hop.move = meet_side(node, hop.god_object, tick->glance);
     } else {
