@@ -72,32 +72,32 @@ struct FreeSpace {
   const fdcg_contact* begun;  // with HIP and god-object as the tick found them
 };
 
-// Whether a ball that no faces touch but a few holds the whole way; it is kept. Where there was none, or none that would hold
-// the next way too, the next looks wait for longer and longer: there a sweep is cheaper.
-template <class Geometry, class Real = typename Geometry::Real>
-inline bool is_in_new_ball(const GraphView<Geometry>& graph, const Vec3<Real>& from, const Vec3<Real>& to,
-                           ContactInternals* inner) {
-  ClearBall* const ball = &inner->clear_ball;
+// Where there was no ball, or none that would hold the next way too, the next looks wait for longer and longer: there a sweep
+// is cheaper.
+inline void wait_longer(ClearBall* ball) {
   constexpr int kLongestWait = 15;
+  ball->next_wait = static_cast<uint16_t>(ball->next_wait < kLongestWait ? 2 * ball->next_wait + 1 : kLongestWait);
+  ball->wait = ball->next_wait;
+}
+
+// Looks for a ball around the end of a way that no faces touch but a few; it is kept.
+template <class Geometry, class Real = typename Geometry::Real>
+inline void look_for_ball(const GraphView<Geometry>& graph, const Vec3<Real>& from, const Vec3<Real>& to,
+                          ContactInternals* inner) {
+  ClearBall* const ball = &inner->clear_ball;
   if (ball->wait > 0) {
     --ball->wait;
-    return false;
+    return;
   }
   const Real way = graph.with_way_of_surface(norm(to - from)), radius = clear_radius(graph, to, way, &inner->near, ball);
-  const bool is_found = radius > way;
-  if (radius > 2 * way) {  // it holds the next tick's way too
+  if (radius > 2 * way) {
     ball->wait = ball->next_wait = 0;
   } else {
-    ball->next_wait = static_cast<uint16_t>(ball->next_wait < kLongestWait ? 2 * ball->next_wait + 1 : kLongestWait);
-    ball->wait = ball->next_wait;
+    wait_longer(ball);
   }
-  if (!is_found) {
-    end_clear_ball(ball);
-    return false;
-  }
+  if (!(radius > way)) return end_clear_ball(ball);
   store(to, ball->centre);
   ball->radius2 = FDCG_MUTANT("clear-ball-large") ? 4 * radius * radius : radius * radius;
-  return true;
 }
 
 // contact-model FREE-5: a way that begins far away, cut to begin where it comes near the graph; `to` where it passes by, or
@@ -146,9 +146,12 @@ inline uint32_t sweep_with_loan(Walk<Geometry>& walk, Feature left, const Vec3<R
   }
   const Vec3<Real> to = walk.hip, from = left.is_free() ? near_start(walk.graph, walk.god_object, to) : walk.god_object;
   const bool is_still = from.x == to.x && from.y == to.y && from.z == to.z;  // no way, no direction
-  const bool has_looked = may_look && walk.graph.hierarchy() != nullptr && !(ball->radius2 > 0) &&
-                          is_in_new_ball(walk.graph, from, to, space->inner);
-  if (is_still || (has_looked && passes_near_nodes(walk.graph, *space->inner, from, to))) {
+  // Where the last look found a ball, this one comes first and may spare the sweep. Else, close to a surface, it comes after
+  // the sweep, and only where that met nothing: the tick of a touch needs no ball.
+  const bool looks = may_look && walk.graph.hierarchy() != nullptr && !(ball->radius2 > 0);
+  const bool looks_first = looks && ball->next_wait == 0;
+  if (looks_first) look_for_ball(walk.graph, from, to, space->inner);
+  if (is_still || (looks_first && ball->radius2 > 0 && passes_near_nodes(walk.graph, *space->inner, from, to))) {
     walk.place(to, kFree);
     carried->stalled_sweeps = 0;
     return 0;
@@ -161,11 +164,13 @@ inline uint32_t sweep_with_loan(Walk<Geometry>& walk, Feature left, const Vec3<R
   if (is_in_ball) sweep.run_near(space->inner->near.node, ball->near_count, &first);
   if (is_in_ball || sweep.run(&first)) {
     arrive(walk, sweep, to, first);
-    if (walk.active.is_free()) {
-      carried->stalled_sweeps = 0;
-    } else {
+    if (!walk.active.is_free()) {
       end_clear_ball(ball);
+      if (looks && !looks_first && ball->wait == 0) wait_longer(ball);
+      return 0;
     }
+    carried->stalled_sweeps = 0;
+    if (looks && !looks_first) look_for_ball(walk.graph, from, to, space->inner);
     return 0;
   }
   end_clear_ball(ball);
