@@ -10,6 +10,16 @@
 
 namespace fdcg {
 
+// Not on a mesh whose corners move, where work is counted as numbers are renewed, nor where a test takes rules out; and a
+// library built for size does without.
+#if defined(__OPTIMIZE_SIZE__) || FDCG_WITH_MUTANTS == 1 || !FDCG_WITH_FAST_FACES
+template <class Geometry>
+inline constexpr bool kHasHops = false;
+#else
+template <class Geometry>
+inline constexpr bool kHasHops = Geometry::kKeepsDirections;
+#endif
+
 // From face to edge to face: a change of state, the edge's rule, a change of state.
 inline constexpr uint32_t kHopWork = 2 * kTransitionWork + kEdgeWork;
 
@@ -116,6 +126,37 @@ template <class Geometry, class Real = typename Geometry::Real>
     if (hop->move.kind != Kind::crosses || hop->work_left <= kHopWork) return;
     if (!hop_over(graph, hip, bound, hop) || hop->is_on_edge) return;
   }
+}
+
+// A god-object that a sweep has put on a face goes on from there as one that a tick finds there. True: what is left to carry
+// out is *move, on the face that it stands on then; nothing where that is on an edge. False: not plainly so, and nothing has
+// changed.
+template <class Geometry, class Real = typename Geometry::Real>
+[[gnu::noinline, gnu::cold]] bool hop_on(Walk<Geometry>& walk, uint32_t* transitions, FaceMove<Real>* move) {
+  const NodeRef<Geometry> node = walk.graph.node(walk.active.index);
+  Hop<Real> hop;
+  hop.side = distance_from(node, walk.hip);
+  if (!walk.graph.is_plain() || !(hop.side < -walk.hip_bound)) return false;
+  walk.spend(kSideWork * node.side_count());
+  hop.node = walk.active.index;
+  hop.prefetched = FDCG_NONE;
+  hop.transitions = 0;
+  hop.is_on_edge = false;
+  hop.work_left = walk.work_left;
+  hop.god_object = walk.god_object;
+  hop.rounding_residual = {0, 0, 0};
+  hop.friction = {walk.friction};
+  hop_to_hip(walk.graph, walk.hip, walk.hip_bound, false, &hop);
+  walk.friction.is_slipping = hop.friction.is_slipping;
+  walk.work_left = hop.work_left;
+  *transitions = hop.transitions;
+  if (hop.transitions != 0) {
+    walk.place(hop.god_object, {FDCG_EDGE, hop.edge});
+    walk.rounding_residual = hop.rounding_residual;
+    walk.active = hop.is_on_edge ? walk.seat : Feature{FDCG_FACE, hop.node};
+  }
+  *move = hop.move;
+  return true;
 }
 
 }  // namespace fdcg

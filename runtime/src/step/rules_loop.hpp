@@ -176,16 +176,6 @@ template <class Geometry, class Real = typename Geometry::Real>
 Progress move_god_object(Walk<Geometry>& walk, Feature start, Vec3<Real> start_gap, Feature hopped, const Decision* decided,
                          FreeSpace* space) {
   Progress progress = {0, 0};
-  if (walk.active.is_free()) {
-    if (FDCG_MUTANT("last-tick-segment")) walk.god_object = walk.hip;
-    progress.flags = sweep_to_hip(walk, kFree, walk.god_object, space);
-    if (walk.active.is_free()) return progress;
-    ++progress.transitions;
-    start = walk.active;
-    start_gap = walk.gap();
-  } else {
-    space->inner->sweep.stalled_sweeps = 0;  // none was carried here
-  }
   Trail<Geometry> trail(start, start_gap);
   if (!hopped.is_free()) trail.begin_nearer(hopped);
   while (true) {

@@ -123,19 +123,38 @@ template <class Geometry>
 template <class Geometry, class Real = typename Geometry::Real>
 [[gnu::noinline, gnu::cold]] void walk_to_hip(Walk<Geometry>& walk, const FaceMove<Real>* move, uint32_t transitions,
                                               const fdcg_params& params, fdcg_contact* contact, fdcg_result* result) {
-  const Vec3<Real> start_gap = walk.gap();
-  const Feature start = walk.active, hopped = transitions != 0 ? walk.seat : kFree;
-  Decision decided = rest();
-  if (move != nullptr) decided = carry_out(walk, *move);
-  const bool asks_face = !FDCG_WITH_FAST_FACES && start.state == FDCG_FACE && walk.friction.terms == nullptr;
-  if (asks_face) {  // not billed: nor is what a short way finds of its first face
-    decided = face_rule(walk);
-    walk.work_left = kRuleWork;
-  }
   ContactInternals& inner = internals_of(*contact);
   FreeSpace space = {&inner, (params.disabled_optimizations & FDCG_STEP_OPT_CLEAR_BALL) == 0, kSweepWork, contact};
-  const Progress progress =
-      move_god_object(walk, start, start_gap, hopped, move != nullptr || asks_face ? &decided : nullptr, &space);
+  const bool is_plain = walk.friction.terms == nullptr;
+  const bool asks_face = !FDCG_WITH_FAST_FACES && walk.active.state == FDCG_FACE && is_plain;
+  uint32_t flags = 0, hops = transitions;
+  FaceMove<Real> landing;
+  if (walk.active.is_free()) {
+    if (FDCG_MUTANT("last-tick-segment")) walk.god_object = walk.hip;
+    flags = sweep_to_hip(walk, kFree, walk.god_object, &space);
+    transitions = walk.active.is_free() ? 0 : 1;
+    if constexpr (kHasHops<Geometry>) {
+      const bool may_hop = is_plain && (params.disabled_optimizations & FDCG_STEP_OPT_HOP) == 0;
+      if (may_hop && walk.active.state == FDCG_FACE && hop_on(walk, &hops, &landing)) move = &landing;
+      transitions += hops;
+    }
+  } else {
+    inner.sweep.stalled_sweeps = 0;  // none was carried here
+  }
+  if (!walk.active.is_free()) {
+    const Vec3<Real> start_gap = walk.gap();
+    const Feature start = walk.active, hopped = hops != 0 ? walk.seat : kFree;
+    Decision decided = rest();  // as of an edge that keeps a god-object
+    if (move != nullptr && start.state == FDCG_FACE) decided = carry_out(walk, *move);
+    if (asks_face) {  // not billed: nor is what a short way finds of its first face
+      decided = face_rule(walk);
+      walk.work_left = kRuleWork;
+    }
+    const Progress after =
+        move_god_object(walk, start, start_gap, hopped, move != nullptr || asks_face ? &decided : nullptr, &space);
+    transitions += after.transitions;
+    flags |= after.flags;
+  }
   // On a surface it is within the object. Planes of a file that is SAFE, and not FULL, may lie up to four extents away from
   // their corners, and take it where no arithmetic holds any longer (contact-model TICK-8).
   if (!walk.active.is_free() && !is_usable(walk.god_object)) {
@@ -143,10 +162,10 @@ template <class Geometry, class Real = typename Geometry::Real>
     walk.active = walk.seat = kFree;
   }
   FDCG_ASSERT(is_of_graph(walk.active, *walk.graph.header()));
-  contact->transition_bound_ticks += (progress.flags & FDCG_RESULT_TRANSITION_BOUND) != 0;
-  contact->sweep_bound_ticks += (progress.flags & FDCG_RESULT_SWEEP_BOUND) != 0;
-  result->flags = progress.flags;
-  result->transitions = transitions + progress.transitions;
+  contact->transition_bound_ticks += (flags & FDCG_RESULT_TRANSITION_BOUND) != 0;
+  contact->sweep_bound_ticks += (flags & FDCG_RESULT_SWEEP_BOUND) != 0;
+  result->flags = flags;
+  result->transitions = transitions;
   const bool is_free = walk.active.is_free();
   if (walk.friction.terms == nullptr) {
     if (!is_free) respond(*walk.graph.header(), params, *contact, walk.hip, walk.god_object, result);
@@ -222,15 +241,6 @@ FDCG_HOT void step_with_flags(const fdcg_graph& raw, const fdcg_params& params, 
   step_with_terms<Geometry>(raw, params, at, contact, result);
 }
 
-// Not on a mesh whose corners move, where work is counted as numbers are renewed, nor where a test takes rules out; and a
-// library built for size does without.
-#if defined(__OPTIMIZE_SIZE__) || FDCG_WITH_MUTANTS == 1 || !FDCG_WITH_FAST_FACES
-template <class Geometry>
-inline constexpr bool kHasHops = false;
-#else
-template <class Geometry>
-inline constexpr bool kHasHops = Geometry::kKeepsDirections;
-#endif
 // The same for ticks that begin on an edge or end there.
 template <class Geometry>
 inline constexpr bool kHasEdgeHops = FDCG_WITH_FAST_EDGES&& kHasHops<Geometry>;

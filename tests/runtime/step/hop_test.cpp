@@ -59,7 +59,7 @@ class Slide {
 
 struct Tally {
   long sliding = 0, crossing = 0, far_crossing = 0, cut_short = 0, crossing_mixed = 0;
-  long onto_edge = 0, along_edge = 0, off_edge = 0;
+  long onto_edge = 0, along_edge = 0, off_edge = 0, landing = 0;
 };
 
 void compare(const PolygonSoup& soup, Precision precision, bool is_smooth, std::uint64_t seed, Tally* tally) {
@@ -74,12 +74,14 @@ void compare(const PolygonSoup& soup, Precision precision, bool is_smooth, std::
   Slide slide(extent(soup), seed);
   for (int i = 0; i < kTicks; ++i) {
     const Hip hip = slide.next();
-    const bool was_on_face = with.state.state == FDCG_FACE, was_on_edge = with.state.state == FDCG_EDGE;
+    const bool was_on_face = with.state.state == FDCG_FACE, was_on_edge = with.state.state == FDCG_EDGE,
+               was_free = with.state.state == FDCG_FREE;
     with.step(hip);
     without.step(hip);
     INFO(soup.name << ", seed " << seed << ", tick " << i << ": " << with.describe() << "; without: " << without.describe());
     REQUIRE(std::memcmp(&with.result, &without.result, sizeof with.result) == 0);
     REQUIRE(std::memcmp(&with.state, &without.state, sizeof with.state) == 0);
+    tally->landing += was_free && with.result.state == FDCG_FACE && with.result.transitions > 2;
     tally->onto_edge += was_on_face && with.result.state == FDCG_EDGE;
     tally->along_edge += was_on_edge && with.result.state == FDCG_EDGE && with.result.transitions == 0;
     tally->off_edge += was_on_edge && with.result.state == FDCG_FACE;
@@ -114,5 +116,6 @@ TEST_CASE("contacts are the same bit for bit with and without hops over edges") 
   CHECK(tally.onto_edge > 1000);
   CHECK(tally.along_edge > 5000);
   CHECK(tally.off_edge > 1000);
+  CHECK(tally.landing > 200);
   CHECK(tally.cut_short > 500);  // where the work of a tick runs out after hops
 }
