@@ -25,7 +25,7 @@ SUPPORT = {"heights_check", "heights_relief", "relief", "relief_check", "waves_r
 # Bars: 48 KB on x86-64, 20 KB on Cortex-M7 (f32). The limits are what a change may not pass; one above its bar says that the bar
 # does not hold yet.
 KB = 1024
-X86_BOTH = {"bar": 48 * KB, "limit": 182_800}
+X86_BOTH = {"bar": 48 * KB, "limit": 183_800}
 X86_F64 = {"bar": 48 * KB, "limit": 108_000}
 M7_F32 = {"bar": 20 * KB, "limit": 47_500}
 M7_F32_TERMS = {"bar": 20 * KB, "limit": 64_400}
@@ -109,7 +109,7 @@ class PartsCase(WeightCase):
     # program, what it is built with: the bar, and the limit, which a change may not pass
     FACETS = ("-DFDCG_WITH_SHADING=OFF",)
     LEAN = (*FACETS, "-DFDCG_WITH_FAST_EDGES=OFF", "-DFDCG_WITH_STATUS_TEXTS=OFF")
-    X86_GRAPHS = (("one_graph", "f64-ordinary", (*F64, *ORDINARY), 64 * KB, 52_400),
+    X86_GRAPHS = (("one_graph", "f64-ordinary", (*F64, *ORDINARY), 64 * KB, 52_800),
                   ("one_graph", "both-ordinary", (*NO_WORDS, *ORDINARY), 96 * KB, 92_500),
                   ("one_graph", "f64-lean", (*F64, *LEAN), 64 * KB, 64 * KB),
                   ("one_graph", "both-lean", (*NO_WORDS, *LEAN), 96 * KB, 117_500),

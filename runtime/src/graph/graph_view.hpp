@@ -275,6 +275,12 @@ struct GraphView : Geometry {
     __asm__ volatile("");
   }
 
+  // Whether its data may be out of a processor's last cache.
+  [[nodiscard]] bool is_large() const {
+    constexpr uint64_t kLarge = 64'000'000;  // bytes
+    return this->header()->file_bytes > kLarge;
+  }
+
   // Calls visit(FanEntry) for each entry of a corner's fan, counter-clockwise seen from outside. Busy corners have long ones.
   template <class Visit>
   void for_each_in_fan(CornerRef<Geometry> corner, Visit&& visit) const {

@@ -53,6 +53,8 @@ inline constexpr uint32_t kMostNear = 8;
 struct NearNodes {
   uint64_t of_node;  // 0: no field is kept
   uint32_t node[kMostNear];
+  uint32_t prefetched;  // the face around which ticks that slide on it prefetch; no contact on a face has a clear ball
+  uint32_t parts;       // ... how much of it is done
 };
 
 struct ContactInternals {
@@ -81,7 +83,7 @@ inline const ContactInternals& internals_of(const fdcg_contact& contact) {
 
 // Leaves out of what is kept what follows from the graph.
 inline void keep_no_field(ContactInternals* inner) {
-  const NearNodes near = inner->clear_ball.near_count != 0 ? inner->near : NearNodes{};
+  const NearNodes near = inner->clear_ball.near_count != 0 ? inner->near : NearNodes{};  // in free space nothing is prefetched
   inner->field = {};
   inner->near = near;
 }

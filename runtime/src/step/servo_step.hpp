@@ -398,6 +398,36 @@ inline void step_by_rules(const fdcg_graph& raw, const fdcg_params& params, cons
   walk_to_hip<Geometry, Real>(walk, nullptr, 0, params, contact, result);
 }
 
+// A tick that slides on its face has time to prefetch what is beyond the neighbours, in a graph that may be out of the caches:
+// first all around the face, then around each of the first three neighbours, a part a tick. A hand that then goes over two
+// edges at once finds it at hand. It changes no result.
+inline constexpr uint32_t kPrefetchedParts = 4;
+template <class Geometry>
+FDCG_HOT bool has_more_to_prefetch(const GraphView<Geometry>& graph, const fdcg_contact& contact) {
+  const NearNodes& near = internals_of(contact).near;
+  return graph.is_large() && (near.prefetched != contact.feature || near.parts < kPrefetchedParts);
+}
+// After a tick that has changed its feature: one that came over an edge has prefetched around the face that it came to.
+template <class Geometry>
+FDCG_HOT void note_prefetched(const GraphView<Geometry>& graph, uint32_t transitions, fdcg_contact* contact) {
+  NearNodes& near = internals_of(*contact).near;
+  if (!graph.is_large() || contact->state != FDCG_FACE || transitions < 2 || near.of_node != 0) return;
+  near.prefetched = contact->feature;
+  near.parts = 1;
+}
+template <class Geometry>
+[[gnu::noinline]] void prefetch_more(const GraphView<Geometry>& graph, fdcg_contact* contact) {
+  NearNodes& near = internals_of(*contact).near;
+  if (near.of_node != 0 || near.prefetched != contact->feature) {  // a field is of a face that the contact has left, or lost
+    near = {};
+    near.prefetched = contact->feature;
+  }
+  const uint32_t part = near.parts++;
+  if (!graph.is_plain()) return;
+  const uint32_t centre = part == 0 ? contact->feature : graph.node(contact->feature).across(part - 1);
+  if (centre != FDCG_NONE) graph.prefetch_neighbours_of(centre);
+}
+
 // A god-object that stays on its face, at rest or sliding, is what a servo loop meets most (contact-model TICK-7): what such a
 // tick does not need is made in step_on().
 template <class Geometry, class Real = typename Geometry::Real>
@@ -428,13 +458,18 @@ void step(const fdcg_graph& raw, const fdcg_params& params, fdcg_contact* contac
       const FaceTick<Real> tick =
           look_at_face(graph, params, *contact, by_parts(hip), plane_rounding_bound(graph, by_parts(hip)));
       if (ends_on_face(graph, hip, tick.glance.kind, false)) {
-        if (tick.glance.kind == FaceMoveKind::slides) leave_seat(contact);
+        const bool slides = tick.glance.kind == FaceMoveKind::slides;
+        if (slides) leave_seat(contact);
         end_at(header, params, hip, tick.glance.target, tick.is_slipping, contact, result);
+        if constexpr (kHasHops<Geometry>) {
+          if (slides && has_more_to_prefetch(graph, *contact)) prefetch_more(graph, contact);
+        }
       } else {
         // Of its own, so that the way above keeps nothing in memory.
         const FaceTick<Real> found = {
             tick.side, tick.is_slipping, {tick.glance.kind, tick.glance.near_side, by_parts(tick.glance.target)}};
         step_on<Geometry, Real>(raw, params, hip, &found, FDCG_NONE, contact, result);
+        if constexpr (kHasHops<Geometry>) note_prefetched(graph, result->transitions, contact);
       }
     } else {
       const Vec3<Real> at = by_parts(hip);  // as above

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Slides from face to face in one go, onto edges, along and off them (step/hop.hpp, step/along_edge.hpp): contacts and results
 // are the same bit for bit with and without.
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -8,6 +9,7 @@
 #include "contact_rig.hpp"
 #include "meshes.hpp"
 #include "random.hpp"
+#include "step/contact_internals.hpp"
 
 using namespace fdcg::test;
 using fdcg::bake::CompileOptions;
@@ -118,4 +120,39 @@ TEST_CASE("contacts are the same bit for bit with and without hops over edges") 
   CHECK(tally.off_edge > 1000);
   CHECK(tally.landing > 200);
   CHECK(tally.cut_short > 500);  // where the work of a tick runs out after hops
+}
+
+TEST_CASE("ticks that slide on a face prefetch around it and beyond its neighbours, once, in a graph that says it is large") {
+  const PolygonSoup soup = ico_sphere(4);
+  const CompiledMesh mesh(soup, CompileOptions{});
+  const bool is_large = GENERATE(false, true);
+  fdcg_header header = *mesh.view().header;
+  if (is_large) header.file_bytes = 1'000'000'000;
+  fdcg_graph graph = mesh.view();
+  graph.header = &header;
+  Contact contact(graph, contact_params(0, 0));
+  const auto parts_of = [&contact](std::uint32_t face) {
+    const fdcg::NearNodes& near = fdcg::internals_of(contact.state).near;
+    return near.prefetched == face ? near.parts : 0;
+  };
+  const double size = extent(soup);
+  contact.step(0.3 * size, 0.3 * size, 1.5 * size);
+  contact.step(0.3 * size, 0.3 * size, 0.8 * size);
+  REQUIRE(contact.state.state == FDCG_FACE);
+  const std::uint32_t face = contact.state.feature;
+  for (std::uint32_t tick = 1; tick <= 6; ++tick) {
+    contact.step((0.3 + 1e-6 * tick) * size, 0.3 * size, 0.8 * size);
+    REQUIRE(contact.state.feature == face);
+    CHECK(parts_of(face) == (is_large ? std::min(tick, 4u) : 0));
+  }
+  int crossings = 0;
+  for (int tick = 0; tick < 400; ++tick) {
+    const std::uint32_t before = contact.state.feature;
+    contact.step((0.3 + 1e-3 * tick) * size, 0.3 * size, 0.8 * size);
+    if (contact.state.state != FDCG_FACE || contact.result.transitions != 2) continue;
+    REQUIRE(contact.state.feature != before);
+    CHECK(parts_of(contact.state.feature) == (is_large ? 1u : 0u));  // around it, on the way
+    ++crossings;
+  }
+  CHECK(crossings > 3);
 }
