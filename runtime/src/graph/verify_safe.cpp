@@ -37,6 +37,8 @@ template <class Real>
 constexpr float kFarthestBox = 8;
 constexpr uint8_t kLeastCellExponent = 127 - 24, kLargestCellExponent = 127;
 
+constexpr uint32_t kLineBytes = 64;  // of most machines' caches
+
 // Its passes are functions of their own: inlined into one, they would take longer for want of registers.
 template <class Real>
 class SafeChunk {
@@ -120,9 +122,11 @@ class SafeChunk {
       const unsigned char* const block = records_.nodes() + at;
       const auto& node = *reinterpret_cast<const Node*>(block);
       const uint32_t count = kSides != 0 ? kSides : node.side_count;
-      at += node_bytes<Real>(count, kHasPlanes);
+      const uint32_t bytes = node_bytes<Real>(count, kHasPlanes);
+      at += bytes;
       if (kSides == 0 && (!is_side_count(count) || at != offset_of(n + 1) || at > node_section_bytes_)) return false;
-      prefetch(block + ahead);
+      for (uint32_t line = 0; line < bytes; line += kLineBytes)
+        prefetch(block + ahead + line);
       if (node.side_count != count || (node.flags & ~uint32_t{FDCG_NODE_INEXACT}) != 0) return false;
       const auto* const side_records = reinterpret_cast<const fdcg_side*>(block + offsetof(Node, sides));
 #pragma GCC unroll 3
