@@ -19,6 +19,9 @@ inline constexpr bool kHasHops = false;
 template <class Geometry>
 inline constexpr bool kHasHops = Geometry::kKeepsDirections;
 #endif
+// The same for ticks that begin on an edge or end there, and for those that land on a face.
+template <class Geometry>
+inline constexpr bool kHasEdgeHops = FDCG_WITH_FAST_EDGES&& kHasHops<Geometry>;
 
 // From face to edge to face: a change of state, the edge's rule, a change of state.
 inline constexpr uint32_t kHopWork = 2 * kTransitionWork + kEdgeWork;

@@ -133,7 +133,7 @@ template <class Geometry, class Real = typename Geometry::Real>
     if (FDCG_MUTANT("last-tick-segment")) walk.god_object = walk.hip;
     flags = sweep_to_hip(walk, kFree, walk.god_object, &space);
     transitions = walk.active.is_free() ? 0 : 1;
-    if constexpr (kHasHops<Geometry>) {
+    if constexpr (kHasEdgeHops<Geometry>) {
       const bool may_hop = is_plain && (params.disabled_optimizations & FDCG_STEP_OPT_HOP) == 0;
       if (may_hop && walk.active.state == FDCG_FACE && hop_on(walk, &hops, &landing)) move = &landing;
       transitions += hops;
@@ -240,10 +240,6 @@ FDCG_HOT void step_with_flags(const fdcg_graph& raw, const fdcg_params& params, 
   }
   step_with_terms<Geometry>(raw, params, at, contact, result);
 }
-
-// The same for ticks that begin on an edge or end there.
-template <class Geometry>
-inline constexpr bool kHasEdgeHops = FDCG_WITH_FAST_EDGES&& kHasHops<Geometry>;
 
 // Whether a tick on a face has a short way of its own; a library built for size has one way for all.
 #if defined(__OPTIMIZE_SIZE__) || !FDCG_WITH_FAST_FACES
