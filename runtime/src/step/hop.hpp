@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// A tick that slides over edges from face to face, or onto an edge that keeps it: what a moving hand meets most. The same
-// numbers, to the bit, as the rules of face.hpp and edge.hpp one after the other, without what serves other ends of theirs.
-// Whatever is not plain is left to them, from where the hops end: corners, borders, doubtful signs, two faces that both pull, a
-// place that is no nearer to the HIP, friction that holds. Graphs that are not plain have no hops.
+// A tick that slides over edges from face to face, or onto an edge that keeps it: what a moving hand meets most, also where it
+// has just landed. The same numbers, to the bit, as the rules of face.hpp and edge.hpp one after the other, without what serves
+// other ends of theirs. Whatever is not plain is left to them, from where the hops end: corners, borders, doubtful signs, two
+// faces that both pull, a place that is no nearer to the HIP, friction that holds. Graphs that are not plain have no hops.
 #pragma once
 
 #include "step/along_edge.hpp"

@@ -414,7 +414,7 @@ FDCG_HOT void note_prefetched(const GraphView<Geometry>& graph, uint32_t transit
 template <class Geometry>
 [[gnu::noinline]] void prefetch_more(const GraphView<Geometry>& graph, fdcg_contact* contact) {
   NearNodes& near = internals_of(*contact).near;
-  if (near.of_node != 0 || near.prefetched != contact->feature) {  // a field is of a face that the contact has left, or lost
+  if (near.of_node != 0 || near.prefetched != contact->feature) {  // a field that shading kept is made anew
     near = {};
     near.prefetched = contact->feature;
   }
