@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Walks around ordinary corners of a graph of triangles in blocks of one size, as the step will go: from side to side, by
-// nodes that SAFE has found in range. Two at once: a step waits for its node, and those of two corners do not wait for one
+// nodes that need not be SAFE yet. Two at once: a step waits for its node, and those of two corners do not wait for one
 // another.
 #pragma once
 
@@ -11,6 +11,7 @@ namespace fdcg {
 struct TriangleSides {
   const unsigned char* first;
   size_t block_bytes;
+  uint32_t count;  // of triangles
 
   const fdcg_side* of(uint32_t n) const { return reinterpret_cast<const fdcg_side*>(first + n * block_bytes); }
 };
@@ -25,7 +26,7 @@ inline constexpr uint32_t kFans = 2;
 // Across the incoming side; null: its twin is not one.
 [[gnu::always_inline]] inline const fdcg_side* cross_incoming(TriangleFan* fan, TriangleSides triangles) {
   const uint32_t across = fan->incoming->across, link = fan->incoming->link ^ 1;
-  if (across == FDCG_NONE) return nullptr;
+  if (across >= triangles.count) return nullptr;  // nowhere, or of damaged bytes
   const fdcg_side* const sides = triangles.of(across);
   const uint32_t is1 = uint32_t{sides[1].link == link}, is2 = uint32_t{sides[2].link == link};
   const fdcg_side* const twin = sides + is1 + 2 * is2;

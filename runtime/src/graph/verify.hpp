@@ -21,6 +21,13 @@ fdcg_status verify_safe_chunk(const fdcg_graph& graph, Chunk chunk, fdcg_verific
 
 // Loops, twins, fans, boxes within boxes: that the graph is one surface, as a compiler writes it.
 fdcg_status verify_full_chunk(const fdcg_graph& graph, Chunk chunk, fdcg_verification* part, fdcg_error* error);
+
+// The same in two parts, so that a chunk's bytes are asked while they are in the cache: first what can be told of a chunk while
+// others are not known to be SAFE, false where something is wrong or cannot be told; then, of a graph that is SAFE, its busy
+// corners.
+bool is_full_alone(const fdcg_graph& graph, Chunk chunk, fdcg_verification* part);
+fdcg_status verify_busy_corners(const fdcg_graph& graph, fdcg_verification* all, fdcg_error* error);
+
 fdcg_status verify_full_sums(const fdcg_graph& graph, const fdcg_verification& sum, fdcg_error* error);
 
 // Every chunk and the sums of each level up to this one.

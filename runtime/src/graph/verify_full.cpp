@@ -15,8 +15,8 @@ namespace fdcg {
 namespace {
 
 // Its passes are functions of their own: inlined into one, they would take longer for want of registers. They may follow any
-// index: SAFE has found all of them in range. Nodes come before corners, in order: so the walks find most of theirs in the
-// cache.
+// index: SAFE has found all of them in range; but those of a surface of triangles only its own chunk's, and ask others where
+// they lead. Nodes come before corners, in order: so the walks find most of theirs in the cache.
 template <class Real>
 class FullChunk {
  public:
@@ -26,9 +26,24 @@ class FullChunk {
   }
 
   fdcg_status run() {
-    fdcg_status status = raw_.hierarchy != nullptr ? hierarchy() : FDCG_OK;
+    fdcg_status status = hierarchy();
     if (status == FDCG_OK && !(are_triangles_ && are_sound_triangles())) status = nodes();
-    return status == FDCG_OK && !(kWalksByTwo && are_triangles_ && are_sound_fans()) ? corners() : status;
+    if (status == FDCG_OK && !(kWalksByTwo && are_triangles_ && are_sound_fans())) status = corners();
+    return status == FDCG_OK ? busy_corners() : status;
+  }
+
+  // All of it but busy corners, where only this chunk is known to be SAFE. False: something is wrong, or cannot be told.
+  bool is_sound_alone() {
+    return kWalksByTwo && are_triangles_ && hierarchy() == FDCG_OK && are_sound_triangles() && are_sound_fans();
+  }
+
+  [[gnu::noinline]] fdcg_status busy_corners() {
+    const uint64_t end = chunk_.end_of(header_.busy_count);
+    for (uint64_t i = chunk_.first_of(header_.busy_count); i < end; ++i) {
+      const uint32_t v = raw_.busy_corners[i].corner;
+      if (const char* const what = busy_fan(v); what != nullptr) return refuse_record(error_, "corner", v, what);
+    }
+    return FDCG_OK;
   }
 
  private:
@@ -143,7 +158,8 @@ class FullChunk {
       uint32_t count = 0;
       for (; v < end && count < kWalks; ++v) {
         const auto corner = static_cast<uint32_t>(v);
-        const char* const what = graph_.corner(corner).is_busy() ? busy_fan(corner) : start_walk(corner, &walks[count++]);
+        if (graph_.corner(corner).is_busy()) continue;
+        const char* const what = start_walk(corner, &walks[count++]);
         if (what != nullptr) return refuse_record(error_, "corner", v, what);
       }
       walk_all(walks, count);
@@ -201,16 +217,14 @@ class FullChunk {
   // The same of triangles of one size. False: something is wrong, and corners() is to say what.
   [[gnu::noinline]] bool are_sound_fans() {
     const uint64_t end = chunk_.end_of(header_.corner_count);
-    const TriangleSides triangles{graph_.nodes() + offsetof(typename Records<Real>::Node, sides), graph_.block_bytes()};
+    const TriangleSides triangles{graph_.nodes() + offsetof(typename Records<Real>::Node, sides), graph_.block_bytes(),
+                                  header_.node_count};
     TriangleFan fans[kFans];
     uint64_t faces = 0;
     uint32_t count = 0;
     for (uint64_t i = chunk_.first_of(header_.corner_count); i < end; ++i) {
       const auto v = static_cast<uint32_t>(i);
-      if (__builtin_expect(graph_.corner(v).is_busy(), false)) {
-        if (busy_fan(v) != nullptr) return false;
-        continue;
-      }
+      if (__builtin_expect(graph_.corner(v).is_busy(), false)) continue;
       if (!start_fan(v, triangles, &fans[count])) return false;
       faces += fans[count].between + 1;
       if (++count < kFans) continue;
@@ -269,6 +283,7 @@ class FullChunk {
 
   // Every box holds those of the record below.
   [[gnu::noinline]] fdcg_status hierarchy() {
+    if (raw_.hierarchy == nullptr) return FDCG_OK;
     const BoxTree tree(header_.node_count);
     return for_mine(tree.records, "box record", [&](uint32_t i, auto* faults) {
       int level = tree.levels - 1;
@@ -310,6 +325,17 @@ class FullChunk {
 
 fdcg_status verify_full_chunk(const fdcg_graph& graph, Chunk chunk, fdcg_verification* part, fdcg_error* error) {
   return with_real_of(*graph.header, [&](auto real) { return FullChunk<decltype(real)>(graph, chunk, part, error).run(); });
+}
+
+bool is_full_alone(const fdcg_graph& graph, Chunk chunk, fdcg_verification* part) {
+  return with_real_of(*graph.header,
+                      [&](auto real) { return FullChunk<decltype(real)>(graph, chunk, part, nullptr).is_sound_alone(); });
+}
+
+fdcg_status verify_busy_corners(const fdcg_graph& graph, fdcg_verification* all, fdcg_error* error) {
+  return with_real_of(*graph.header, [&](auto real) {
+    return FullChunk<decltype(real)>(graph, {0, 1}, all, error).busy_corners();
+  });
 }
 
 fdcg_status verify_full_sums(const fdcg_graph& graph, const fdcg_verification& sum, fdcg_error* error) {

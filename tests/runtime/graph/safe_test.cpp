@@ -10,6 +10,7 @@
 #include "catch.hpp"
 #include "contact_rig.hpp"
 #include "meshes.hpp"
+#include "random.hpp"
 #include "sealed_bytes.hpp"
 
 using namespace fdcg::test;
@@ -53,7 +54,51 @@ void press_on_corners(const fdcg_graph& graph) {
   }
 }
 
+// One level after the other, as callers do who verify chunks themselves.
+fdcg_status level_by_level(AlignedBytes& file) {
+  fdcg_graph graph;
+  fdcg_error error;
+  fdcg_status status = fdcg_open_trusted(file.data(), file.size(), &graph, &error);
+  for (const auto level : {FDCG_VERIFY_SAFE, FDCG_VERIFY_FULL}) {
+    fdcg_verification sum = {};
+    for (std::uint32_t i = 0; status == FDCG_OK && i < fdcg_verify_chunk_count(&graph); ++i)
+      status = fdcg_verify_chunk(&graph, level, i, &sum, &error);
+    if (status == FDCG_OK) status = fdcg_verify_sum(&graph, level, &sum, 1, &error);
+  }
+  return status;
+}
+
 }  // namespace
+
+TEST_CASE("opening, which verifies both levels of a chunk at once, accepts what one level after the other does") {
+  int accepted = 0, full = 0;
+  for (const PolygonSoup& soup : {star_sphere(4, 0.3, 5), cone(4000)}) {
+    const AlignedBytes whole = compiled(soup, Precision::f64);
+    Random random(7);
+    for (int i = 0; i < 300; ++i) {
+      INFO("change " << i);
+      AlignedBytes file = whole;
+      // A side, or a corner's fan, exchanged for another's: SAFE finds some of it, FULL the rest.
+      const fdcg_section& section = section_of(file, i % 3 == 0 ? FDCG_SECTION_CORNERS : FDCG_SECTION_NODES);
+      const auto record = [&](std::uint64_t n) { return file.data() + section.offset + n * section.record_bytes; };
+      const auto count = static_cast<std::uint32_t>(section.record_count);
+      const std::uint64_t first = i % 3 == 0 ? offsetof(fdcg_corner_f64, point) + sizeof(double[3])
+                                             : offsetof(fdcg_node_f64, sides),
+                          words = i % 3 == 0 ? 2 : 9;
+      const std::uint64_t at = first + 4 * random.below(static_cast<std::uint32_t>(words));
+      const std::uint32_t n = random.below(count);
+      if (i % 20 != 0) std::memcpy(record(n) + at, record((n + 1 + random.below(3)) % count) + at, 4);
+      seal(file);
+      fdcg_graph graph;
+      const fdcg_status status = fdcg_open_memory(file.data(), file.size(), FDCG_VERIFY_FULL, &graph, nullptr);
+      CHECK(status == level_by_level(file));
+      accepted += status == FDCG_OK;
+      full += status != FDCG_OK && fdcg_open_memory(file.data(), file.size(), FDCG_VERIFY_SAFE, &graph, nullptr) == FDCG_OK;
+    }
+  }
+  CHECK(accepted >= 30);
+  CHECK(full > 30);
+}
 
 TEST_CASE("corners with a border that do not say so are SAFE, and harmless to press on") {
   for (const Precision precision : {Precision::f64, Precision::f32}) {
