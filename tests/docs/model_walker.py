@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The step as docs/internals/contact-model.md has it, written anew rule by rule: double precision, triangles, every face
 looked at. Left out are the rules that this needs none of: busy corners (contact-model CORNER-7), inexact nodes (EDGE-7, GRAPH-4),
-slits as narrow as a rounding (LEAVE-3), work carried over (BOUND-1 to BOUND-3, LEAVE-4), what only saves time (TICK-7, FREE-7),
+slits as narrow as a rounding (LEAVE-3), work carried over (BOUND-1 to BOUND-3), what only saves time (TICK-7, FREE-7),
 damping, and the friction curve. Over 400 lines: the model in one place, in the page's order."""
 import math
 from fractions import Fraction
@@ -89,7 +89,7 @@ class Edge:
             out = cross(self.direction, n) if which == 0 else cross(n, self.direction)
             m = over(out, norm(out))
             self.voronoi.append((m, -dot(m, self.v0)))
-        self.end_tolerance = 8 * EPS * (norm1(self.v0) + self.length)
+        self.end_tolerance = 10 * EPS * graph.extent
 
     def parameter(self, x):
         return dot(minus(x, self.v0), self.direction)
@@ -236,10 +236,10 @@ class Walker:
             return False
         edge, after = self.graph.edge[self.rim], (EDGE, self.rim)
         if self.seat == after:
-            u, near = edge.parameter(self.god_object), 2 * self.graph.rounding(self.hip)
-            if u > near and edge.length - u > near:
+            u = edge.parameter(self.god_object)
+            if u > edge.end_tolerance and edge.length - u > edge.end_tolerance:
                 return False
-            after = self.place_on_edge(self.rim, u, near)
+            after = self.place_on_edge(self.rim, u)
         elif self.seat is None or self.seat[0] != VERTEX or self.seat[1] not in edge.corner:
             return False
         elif any(side < 0 and s < 0 for side, s in self.sides(edge)) and not self.holds(after):
@@ -409,16 +409,13 @@ class Walker:
         edge = self.graph.side[face][k][0]
         return self.place_on_edge(edge, self.graph.edge[edge].parameter(point))
 
-    def place_on_edge(self, index, u, near=None):  # contact-model FACE-6
-        graph, edge, self.rim = self.graph, self.graph.edge[index], index
-        for end, from_end in enumerate((u, edge.length - u)):
-            if from_end > (edge.end_tolerance if near is None else near):
-                continue
-            vertex = edge.corner[end]
-            is_worse = from_end > 0 and norm(minus(graph.point[vertex], self.hip)) > norm(minus(self.god_object, self.hip))
-            self.place(edge.at(u) if is_worse else graph.point[vertex], (VERTEX, vertex))
-            return self.seat
+    def place_on_edge(self, index, u):  # contact-model FACE-6
+        edge, self.rim = self.graph.edge[index], index
         self.place(edge.at(u), (EDGE, index))
+        for vertex, from_end in zip(edge.corner, (u, edge.length - u)):
+            if from_end <= edge.end_tolerance:
+                self.place(self.graph.point[vertex], (VERTEX, vertex))
+                break
         return self.seat
 
     # ---- friction
@@ -475,15 +472,10 @@ class Walker:
     # ---- on a vertex
 
     def on_vertex(self, vertex):
-        point = self.graph.point[vertex]
-        t = minus(self.hip, point)
+        t = minus(self.hip, self.graph.point[vertex])
         is_open = any(self.graph.edge[e].type == BOUNDARY for e in self.graph.edges_at[vertex])
         after = self.after_open_vertex(vertex, t) if is_open else self.after_vertex(vertex, t)
-        if after == (VERTEX, vertex):
-            return None
-        if self.god_object != point:  # contact-model CORNER-6
-            self.god_object = self.beside(after, point, t)
-        return after
+        return None if after == (VERTEX, vertex) else after
 
     def after_vertex(self, vertex, t):  # contact-model CORNER-3, CORNER-4
         if self.graph.begins_outside(vertex, self.hip):
@@ -530,13 +522,3 @@ class Walker:
                 best = steeper(best, ((FACE, face), dot(in_plane, in_plane), height * height))
         return best[0]
 
-    def beside(self, after, point, t):
-        if after == NOWHERE:
-            return point
-        if after[0] == FACE:
-            down = minus(self.foot(after[1], self.hip), point)
-        else:
-            direction = self.graph.edge[after[1]].direction
-            down = times(direction, dot(direction, t))
-        off = norm(minus(self.god_object, point))
-        return plus(point, times(down, off / norm(down)) if off < norm(down) else down)

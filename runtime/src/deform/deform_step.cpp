@@ -156,7 +156,6 @@ inline void seat_on(uint32_t n, fdcg_contact* contact) {
   inner.seat_state = FDCG_FREE;
   inner.seat_feature = FDCG_NONE;
   inner.slip_m_per_s = inner.stiffness_n_per_m = 0;
-  inner.sweep.stalled_sweeps = 0;
 }
 
 // A sweep that ran out of work restarts, on the present mesh, and goes half as far (shorten): from the feature that the

@@ -63,17 +63,17 @@ inline Real slab_depth(double deviation, Real bound) {
 
 // ---- A place on an edge, or at its end
 
-// FACE-6, EDGE-6: a place so near to an end of an edge is meant to be the vertex: the rounding of a place on the edge's line.
+// FACE-6, EDGE-6: a place so near to an end of an edge is the vertex: more than the rounding of a place on the edge's line, so
+// that none beside it is left that the corner's faces would hand around.
 template <class Real>
-inline Real end_rounding(const Vec3<Real>& start, Real length) {
-  return 8 * RealLimits<Real>::kEpsilon * (norm1(start) + length);
+inline Real end_rounding(Real extent) {
+  return 10 * RealLimits<Real>::kEpsilon * extent;
 }
 
-// TICK-5, EDGE-8: a god-object that goes in a circle, or is let go, this near to a corner is on it. `bound`:
-// plane_rounding_bound.
+// TICK-5: a god-object that goes in a circle this near to a corner is on it; two merged faces may lie off it, on either side.
 template <class Real>
-inline Real corner_rounding(Real bound, Real deviation) {
-  return 2 * (bound + deviation);
+inline Real corner_rounding(Real extent, Real deviation) {
+  return end_rounding(extent) + 4 * deviation;
 }
 
 // ---- A way

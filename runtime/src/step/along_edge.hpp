@@ -57,7 +57,7 @@ template <class Geometry, class Real = typename Geometry::Real>
   const Real u = slip.is_rest                                         ? foot + ahead
                  : (ahead > 0) != FDCG_MUTANT("edge-way-slides-past") ? foot + slip.gap
                                                                       : foot - slip.gap;
-  const Real end_tolerance = end_rounding(start, edge.length);
+  const Real end_tolerance = end_rounding(a.extent());
   if (!(u > end_tolerance && edge.length - u > end_tolerance)) return OnEdge::unsure;
   const Vec3<Real> stands = slip.is_rest || FDCG_MUTANT("edge-way-stays") ? along->god_object : start + direction * u;
   if (!is_usable(stands)) return OnEdge::unsure;

@@ -13,17 +13,16 @@ namespace fdcg {
 // may meet are done. Then the contact is placed on what was met first, or at the target, and goes on from there to the newest
 // HIP.
 struct CarriedSweep {
-  double target[3];         // local
-  double fraction;          // of the path: where the first feature met so far is entered
-  uint32_t state;           // that feature: FDCG_FREE if nothing is met so far
-  uint32_t feature;         // ... node or connection
-  uint32_t node;            // ... the node through which it was met
-  uint32_t left_state;      // the feature that the path starts on; FDCG_FREE: none
-  uint32_t left_feature;    // its number
-  uint32_t next_leaf;       // leaf of the hierarchy, or node where there is none
-  uint32_t is_carried;      // 0: there is no such sweep
-  uint16_t stalled_sweeps;  // consecutive sweeps, each over several ticks, that ended where they began
-  uint16_t stalled_ticks;   // ... ticks that spent the rules' work and moved nothing
+  double target[3];        // local
+  double fraction;         // of the path: where the first feature met so far is entered
+  uint32_t state;          // that feature: FDCG_FREE if nothing is met so far
+  uint32_t feature;        // ... node or connection
+  uint32_t node;           // ... the node through which it was met
+  uint32_t left_state;     // the feature that the path starts on; FDCG_FREE: none
+  uint32_t left_feature;   // its number
+  uint32_t next_leaf;      // leaf of the hierarchy, or node where there is none
+  uint32_t is_carried;     // 0: there is no such sweep
+  uint32_t stalled_ticks;  // consecutive ticks that spent the rules' work and moved nothing
 };
 
 // A ball in free space that no faces touch but a few; if there is one, the last HIP is in it.

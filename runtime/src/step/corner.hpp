@@ -209,51 +209,16 @@ inline Feature next_from_corner(Walk<Geometry>& walk, CornerRef<Geometry> corner
   return is_rim ? Feature{FDCG_FACE, walk.graph.connection(found.index).node(0)} : found;
 }
 
-// Whether a way from a god-object beside its corner passes below no face of it: it is behind none that the HIP is in front of.
-template <class Geometry, class Real = typename Geometry::Real>
-[[gnu::noinline, gnu::cold]] bool may_begin_beside(Walk<Geometry>& walk) {
-  const CornerRef<Geometry> corner = walk.graph.corner(walk.active.index);
-  if (corner.is_busy()) return false;
-  const Real bound = plane_rounding_bound(walk.graph, walk.god_object);
-  bool may = true;
-  walk.graph.for_each_in_fan(corner, [&](const FanEntry& entry) {
-    if (!may || entry.node == FDCG_NONE) return;
-    const NodeRef<Geometry> node = walk.graph.node(entry.node);
-    may = walk.side(node) < 0 || side_of(walk.graph, node, walk.god_object, bound, &walk.work_left) >= 0;
-  });
-  return may;
-}
-
-// contact-model CORNER-6: a god-object beside the corner `point`, where an edge's rule left it (walk.hpp,
-// snapping_increases_distance), as far from the corner on `next` instead, straight down: so it is no farther from the HIP than
-// it was, which at the corner it might be. Free, it stays; or the way begins at the corner, lest it pass below a face of it.
-// `t`: from the corner to the HIP.
-template <class Geometry, class Real = typename Geometry::Real>
-[[gnu::noinline, gnu::cold]] Vec3<Real> moved_beside(Walk<Geometry>& walk, Feature next, const Vec3<Real>& point,
-                                                     const Vec3<Real>& t) {
-  if (next.is_free()) return may_begin_beside(walk) ? walk.god_object : point;
-  Vec3<Real> down;  // to the foot of the HIP on `next`
-  if (next.state == FDCG_FACE) {
-    down = foot_on(walk.graph.node(next.index), walk.hip) - point;
-  } else {
-    const Vec3<Real> direction = walk.graph.direction(next.index);
-    down = direction * dot(direction, t);
-  }
-  const Real off = norm(walk.god_object - point), length = norm(down);
-  return point + (off < length ? down * (off / length) : down);
-}
-
 // Cost: one connection, one node and two Voronoi planes for each edge of the corner; at a busy corner for some eight of them,
 // and the logarithm of their number in boxes.
 template <class Geometry, class Real = typename Geometry::Real>
 [[gnu::noinline, gnu::cold]] Decision corner_rule(Walk<Geometry>& walk) {
   const CornerRef<Geometry> corner = walk.graph.corner(walk.active.index);
-  const Vec3<Real> point = corner.point(), t = walk.hip - point;
+  const Vec3<Real> t = walk.hip - corner.point();
   const Feature next = FDCG_MUTANT("corner-never-left")    ? walk.active
                        : FDCG_MUTANT("corner-always-free") ? kFree
                                                            : next_from_corner(walk, corner, t);
   if (next == walk.active) return rest();
-  if (norm1(walk.god_object - point) > 0) walk.god_object = moved_beside(walk, next, point, t);
   return go_to(next);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The god-object on an edge (contact-model EDGE-1 to EDGE-8; Melder 2004, sections 5d to 5f and 6).
+// The god-object on an edge (contact-model EDGE-1 to EDGE-7; Melder 2004, sections 5d to 5f and 6).
 #pragma once
 
 #include "step/shaded_edge.hpp"

@@ -56,11 +56,7 @@ template <class Geometry, class Real = typename Geometry::Real>
   carried->feature = first.feature.index;
   if (!is_done) return false;
   carried->is_carried = 0;
-  const Vec3<Real> from = walk.god_object;
   arrive(walk, sweep, to, first);
-  const bool is_held = norm1(walk.hip - to) <= walk.hip_bound;  // else the HIP has moved: either feature may release it
-  const bool is_where_it_was = is_held && first.feature.state != FDCG_FREE && norm1(walk.god_object - from) <= walk.hip_bound;
-  carried->stalled_sweeps = static_cast<uint16_t>(is_where_it_was ? carried->stalled_sweeps + 1 : 0);
   return true;
 }
 
@@ -136,14 +132,6 @@ inline uint32_t sweep_with_loan(Walk<Geometry>& walk, Feature left, const Vec3<R
     if (!finish_carried_sweep(walk, carried, &space->work_left)) return FDCG_RESULT_SWEEP_BOUND;
     if (!walk.active.is_free()) return 0;
   }
-  // Two features at one point may pass the contact to each other by way of free space. Within a tick the trail detects that;
-  // here each pass has taken a tick, and the contact rests where it is (contact-model LEAVE-4).
-  constexpr uint32_t kMostStalledSweeps = 4;
-  if (!left.is_free() && carried->stalled_sweeps >= kMostStalledSweeps) {
-    carried->stalled_sweeps = 0;
-    walk.active = left;
-    return 0;
-  }
   const Vec3<Real> to = walk.hip, from = left.is_free() ? near_start(walk.graph, walk.god_object, to) : walk.god_object;
   const bool is_still = from.x == to.x && from.y == to.y && from.z == to.z;  // no way, no direction
   // Where the last look found a ball, this one comes first and may spare the sweep. Else, close to a surface, it comes after
@@ -153,7 +141,6 @@ inline uint32_t sweep_with_loan(Walk<Geometry>& walk, Feature left, const Vec3<R
   if (looks_first) look_for_ball(walk.graph, from, to, space->inner);
   if (is_still || (looks_first && ball->radius2 > 0 && passes_near_nodes(walk.graph, *space->inner, from, to))) {
     walk.place(to, kFree);
-    carried->stalled_sweeps = 0;
     return 0;
   }
   walk.god_object = from;
@@ -169,7 +156,6 @@ inline uint32_t sweep_with_loan(Walk<Geometry>& walk, Feature left, const Vec3<R
       if (looks && !looks_first && ball->wait == 0) wait_longer(ball);
       return 0;
     }
-    carried->stalled_sweeps = 0;
     if (looks && !looks_first) look_for_ball(walk.graph, from, to, space->inner);
     return 0;
   }
@@ -183,7 +169,6 @@ inline uint32_t sweep_with_loan(Walk<Geometry>& walk, Feature left, const Vec3<R
               left.index,
               0,
               1,
-              carried->stalled_sweeps,
               0};
   walk.active = walk.seat = kFree;
   if (space->work_left == 0 || !finish_carried_sweep(walk, carried, &space->work_left)) return FDCG_RESULT_SWEEP_BOUND;

@@ -94,7 +94,7 @@ FDCG_HOT bool hop_over(const GraphView<Geometry>& graph, const Vec3<Real>& hip, 
   const auto& edge = graph.edges()[crossed.link >> 1];
   const Vec3<Real> start = graph.corner_point(here.corner_before(k + (crossed.link & 1)));
   const Vec3<Real> direction = vec(edge.direction);
-  const Real u = dot((from + ahead) - start, direction), end_tolerance = end_rounding(start, edge.length);
+  const Real u = dot((from + ahead) - start, direction), end_tolerance = end_rounding(here.extent());
   if (!(u > end_tolerance && edge.length - u > end_tolerance)) return false;
   const Vec3<Real> god_object = start + direction * u, gap = god_object - hip;
   const Real gap2 = dot(gap, gap);

@@ -27,7 +27,6 @@ class Trail {
     if (now2 < nearest2_) {
       nearest2_ = now2;
       count_ = 0;
-      has_come_nearer_ = true;
       rounds_ = 0;
       was_let_go_ = false;
     }
@@ -43,7 +42,6 @@ class Trail {
     visited_[count_++] = key(feature);
     return true;
   }
-  [[nodiscard]] bool has_come_nearer() const { return has_come_nearer_; }
   // A feature has let the god-object go.
   void let_go() { was_let_go_ = true; }
   // Whether the circle leads through free space, past faces, and the HIP is clearly over none of them; or past edges alone,
@@ -62,11 +60,8 @@ class Trail {
     }
     return is_beside || are_edges;
   }
-  // Where hops have led to the start, over this edge, which was nearer than all before.
-  void begin_nearer(Feature edge) {
-    visited_[count_++] = key(edge);
-    has_come_nearer_ = true;
-  }
+  // Where hops have led to the start: the edge that they went over last.
+  void add(Feature edge) { visited_[count_++] = key(edge); }
 
   // Called where the step would rest (contact-model TICK-6). A rest must hold in the next tick, which knows nothing of the
   // features visited here, nor of Walk::rounding_residual, which is not kept between ticks: so the step continues as that tick
@@ -90,7 +85,6 @@ class Trail {
 
   Real nearest2_;
   int count_;
-  bool has_come_nearer_ = false;
   bool was_let_go_ = false;  // since it came nearer, or began again
   int rounds_ = 0;           // begun again, since it came nearer; and from which place last
   Vec3<Real> begun_from_ = {RealLimits<Real>::kFar, 0, 0};
@@ -120,16 +114,16 @@ template <class Geometry, class Real = typename Geometry::Real>
   return is_over && lets_go(walk.graph, walk.hip_bound, connection.type(), s);
 }
 
-// Whether the god-object is at an end of an edge but for rounding (contact-model TICK-5, EDGE-8). It then sits on the
-// corner there, or beside it where that is nearer to the HIP (CORNER-6).
+// Whether the god-object is, but for rounding, at an end of the edge on which it was last placed (contact-model TICK-5). It is
+// then placed on the corner there.
 template <class Geometry, class Real = typename Geometry::Real>
-[[gnu::noinline, gnu::cold]] bool goes_to_corner(Walk<Geometry>& walk, uint32_t edge) {
-  const Real near = corner_rounding(walk.hip_bound, Real(2 * walk.graph.max_deviation()));
+[[gnu::noinline, gnu::cold]] bool goes_to_corner(Walk<Geometry>& walk) {
+  if (walk.rim == FDCG_NONE) return false;
+  const Real near = corner_rounding(Real(walk.graph.header()->extent), Real(walk.graph.max_deviation()));
   for (uint32_t end = 0; end < 2; ++end) {
-    const uint32_t corner = walk.graph.connection(edge).corner(end);
+    const uint32_t corner = walk.graph.connection(walk.rim).corner(end);
     if (norm1(walk.graph.corner_point(corner) - walk.god_object) > near) continue;
-    walk.seat = {FDCG_VERTEX, corner};
-    if (!snapping_increases_distance(walk, corner)) walk.place(walk.graph.corner_point(corner), walk.seat);
+    walk.place(walk.graph.corner_point(corner), {FDCG_VERTEX, corner});
     return true;
   }
   return false;
@@ -142,8 +136,7 @@ template <class Geometry, class Real = typename Geometry::Real>
 // go a HIP behind and over one of its faces: the corner has found that it is inside. False: neither is left.
 template <class Geometry, class Real = typename Geometry::Real>
 [[gnu::noinline, gnu::cold]] bool goes_on_at_corner(Walk<Geometry>& walk, Trail<Geometry>* trail) {
-  if (walk.rim == FDCG_NONE || FDCG_MUTANT("circle-at-corner")) return false;
-  if (!goes_to_corner(walk, walk.rim)) return false;
+  if (FDCG_MUTANT("circle-at-corner") || !goes_to_corner(walk)) return false;
   Feature next = walk.seat;
   if (!trail->may_visit(next)) {
     next = {FDCG_EDGE, walk.rim};
@@ -164,8 +157,7 @@ inline bool is_shorter(const Vec3<Real>& a, const Vec3<Real>& b) {
 }
 
 template <class Geometry>
-FDCG_OUTLINED void let_go_to_hip(Walk<Geometry>& walk, FreeSpace* space) {
-  space->inner->sweep.stalled_sweeps = 0;
+FDCG_OUTLINED void let_go_to_hip(Walk<Geometry>& walk) {
   walk.place(walk.hip, kFree);
   walk.active = kFree;
 }
@@ -177,25 +169,18 @@ Progress move_god_object(Walk<Geometry>& walk, Feature start, Vec3<Real> start_g
                          FreeSpace* space) {
   Progress progress = {0, 0};
   Trail<Geometry> trail(start, start_gap);
-  if (!hopped.is_free()) trail.begin_nearer(hopped);
+  if (!hopped.is_free()) trail.add(hopped);
   while (true) {
     const Feature at = walk.active;
     const Decision decision = decided != nullptr ? *decided : apply_rule(walk);
     decided = nullptr;
-    if (decision == rest()) {
-      space->inner->sweep.stalled_sweeps = 0;
-      return progress;
-    }
+    if (decision == rest()) return progress;
     walk.active = next_of(decision);
     ++progress.transitions;
     if (FDCG_MUTANT("walk-cut") && progress.transitions > 3) return progress;
     if (walk.active.state == FDCG_FACE) walk.graph.prefetch_around(walk.graph.node(walk.active.index));
     if (walk.active.is_free()) {
       trail.let_go();
-      if (at.state == FDCG_EDGE && goes_to_corner(walk, at.index)) walk.active = walk.seat;
-    }
-    if (walk.active.is_free()) {
-      if (trail.has_come_nearer()) space->inner->sweep.stalled_sweeps = 0;
       const Vec3<Real> stood = walk.god_object;
       const Feature seat = walk.seat;
       const bool can_wait =
@@ -216,7 +201,7 @@ Progress move_god_object(Walk<Geometry>& walk, Feature start, Vec3<Real> start_g
     if (!FDCG_MUTANT("met-again") && trail.has_met_again(walk) && !goes_on_at_corner(walk, &trail) &&
         !trail.begins_again(walk)) {
       if (trail.passes_hip_by(walk)) {
-        let_go_to_hip(walk, space);
+        let_go_to_hip(walk);
         return progress;
       }
       // Of a face and an edge the face pulls; a shaded one pulls another way than its plane does.
@@ -234,14 +219,14 @@ Progress move_god_object(Walk<Geometry>& walk, Feature start, Vec3<Real> start_g
       const Vec3<Real> gap = walk.gap(), begun = gap_begun(walk, *space);
       uint32_t most = kMostStalledTicks;
       if (norm1(gap - begun) > 0) most += walk.graph.header()->node_count / kFacesATick;
-      uint16_t* const stalled = &space->inner->sweep.stalled_ticks;
+      uint32_t* const stalled = &space->inner->sweep.stalled_ticks;
       const bool gets_on = is_shorter(gap, begun) || (!is_held && !is_at_start);
-      *stalled = static_cast<uint16_t>(gets_on ? 0 : *stalled + (*stalled < most));
+      *stalled = gets_on ? 0 : *stalled + (*stalled < most);
       if (gets_on || (*stalled < most && !is_at_start)) {
         progress.flags |= FDCG_RESULT_TRANSITION_BOUND;
       } else if (walk.graph.has_inexact_nodes() &&
                  trail.passes_hip_by(walk)) {  // a circle of merged faces may take all the work
-        let_go_to_hip(walk, space);
+        let_go_to_hip(walk);
       }
       return progress;
     }

@@ -138,8 +138,6 @@ template <class Geometry, class Real = typename Geometry::Real>
       if (may_hop && walk.active.state == FDCG_FACE && hop_on(walk, &hops, &landing)) move = &landing;
       transitions += hops;
     }
-  } else {
-    inner.sweep.stalled_sweeps = 0;  // none was carried here
   }
   if (!walk.active.is_free()) {
     const Vec3<Real> start_gap = walk.gap();
@@ -204,7 +202,6 @@ template <class Geometry, class Real = typename Geometry::Real>
   spring_damper_force(*raw.header, params, *contact, smaller(inner.stiffness_n_per_m, own), local_hip, spring, result);
   inner.slip_m_per_s = 0;
   if (!tick.is_rest) inner.seat_state = FDCG_FREE, inner.seat_feature = FDCG_NONE;
-  inner.sweep.stalled_sweeps = 0;
   contact->feature = tick.node;
   contact->slipping = tick.is_slipping ? 1 : 0;
   result->transitions = tick.transitions;
@@ -281,7 +278,6 @@ inline bool ends_on_face(const GraphView<Geometry>& graph, Vec3<Real> hip, FaceM
 template <class Real>
 FDCG_HOT void end_at(const fdcg_header& header, const fdcg_params& params, const Vec3<Real>& hip, const Vec3<Real>& god_object,
                      bool is_slipping, fdcg_contact* contact, fdcg_result* result) {
-  internals_of(*contact).sweep.stalled_sweeps = 0;
   contact->slipping = is_slipping ? 1 : 0;
   respond(header, params, *contact, hip, god_object, result);
   store(god_object, contact->god_object);

@@ -61,7 +61,7 @@ template <class Geometry, class Real = typename Geometry::Real>
     return false;
   const Vec3<Real> landed = tick->god_object + (target - tick->god_object) * crossing.fraction;
   const Edge<Real> edge = graph.edge(here, k);
-  const Real u = dot(landed - edge.start, edge.direction), end_tolerance = end_rounding(edge.start, edge.length);
+  const Real u = dot(landed - edge.start, edge.direction), end_tolerance = end_rounding(here.extent());
   if (!(u > end_tolerance && edge.length - u > end_tolerance)) return false;
   tick->god_object = by_parts(edge.start + edge.direction * u);
   tick->node = crossed.across;

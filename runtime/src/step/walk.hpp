@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The state of one contact within one step, and the moves that the rules share. face.hpp, edge.hpp, corner.hpp hold the rules
-// contact-model FACE-1 to FACE-7, EDGE-1 to EDGE-8, CORNER-1 to CORNER-7, free_space.hpp and sweep.hpp those of free space;
+// contact-model FACE-1 to FACE-7, EDGE-1 to EDGE-7, CORNER-1 to CORNER-7, free_space.hpp and sweep.hpp those of free space;
 // rules_loop.hpp drives them.
 #pragma once
 
@@ -108,7 +108,7 @@ struct EdgeLine : Edge<Real> {
   template <class Geometry, class... Where>
   explicit EdgeLine(const GraphView<Geometry>& graph, Where... where) {
     graph.read_edge(where..., this);
-    end_tolerance = end_rounding(this->start, this->length);
+    end_tolerance = end_rounding(Real(graph.header()->extent));
   }
 
   [[nodiscard]] FDCG_HOT Real parameter(const Vec3<Real>& x) const { return dot(x - this->start, this->direction); }
@@ -128,13 +128,6 @@ inline bool is_between_ends(NodeRef<Geometry> node, uint32_t k, const Vec3<Real>
   return past_ends(node, k, x, Real(1)) <= 0;
 }
 
-// Whether a corner is farther from the HIP than the god-object. It is then not placed there, but the corner's rule decides,
-// since two edges of a needle's tip would pass it to each other.
-template <class Geometry, class Real = typename Geometry::Real>
-[[gnu::noinline, gnu::cold]] bool snapping_increases_distance(const Walk<Geometry>& walk, uint32_t corner) {
-  return norm(walk.graph.corner_point(corner) - walk.hip) > norm(walk.gap());
-}
-
 // Places the god-object at u on a connection: on a corner at, past or within rounding of an end: walk.seat says which.
 template <class Geometry, class Real = typename Geometry::Real>
 [[gnu::noinline, gnu::cold]] void place_on_edge(Walk<Geometry>& walk, uint32_t connection_index, const EdgeLine<Real>& line,
@@ -147,7 +140,7 @@ template <class Geometry, class Real = typename Geometry::Real>
     if (FDCG_MUTANT("lands-on-vertex") ? !(from_end < 0) : !(from_end <= line.end_tolerance)) continue;
     const uint32_t at = FDCG_MUTANT("corners-swapped") ? 1 - end : end;
     on = {FDCG_VERTEX, walk.graph.connection(connection_index).corner(at)};
-    if (!(from_end > 0 && snapping_increases_distance(walk, on.index))) point = walk.graph.corner_point(on.index);
+    point = walk.graph.corner_point(on.index);
     break;
   }
   if (FDCG_MUTANT("slip-flag-feature") && on.state == FDCG_EDGE) walk.friction.is_slipping = false;

@@ -271,7 +271,7 @@ double Judge::descent_from(const Tick& tick) const {
     double most = has_friction_ ? 0 : std::abs(dot(gap, edge.direction));
     // Where it ends, but for rounding, the corner is meant (contact-model FACE-6).
     for (const std::uint32_t corner : edge.corner) {
-      if (!has_friction_ && is_meant(corner, edge, tick.god_object)) most = std::max(most, descent_at(corner, tick));
+      if (!has_friction_ && is_meant(corner, tick.god_object)) most = std::max(most, descent_at(corner, tick));
     }
     const Hip t = difference(tick.hip, edge.start);
     for (const std::uint32_t n : edge.node) {  // square to the edge, into the face
@@ -297,9 +297,8 @@ double Judge::descent_at(std::uint32_t corner, const Tick& tick) const {
 
 // Whether a place on an edge is so near to a corner at its end that the corner is active by rule: half as near, since the place
 // is rounded.
-bool Judge::is_meant(std::uint32_t corner, const EdgeShape& edge, const Hip& place) const {
-  const double sum = std::abs(edge.start[0]) + std::abs(edge.start[1]) + std::abs(edge.start[2]);
-  return distance(place, specimen_.corners[corner].point) <= kEnd_eps / 2 * epsilon_ * (sum + edge.length);
+bool Judge::is_meant(std::uint32_t corner, const Hip& place) const {
+  return distance(place, specimen_.corners[corner].point) <= kEnd_eps / 2 * epsilon_ * specimen_.header().extent;
 }
 
 // Where a god-object may be that is at rest.

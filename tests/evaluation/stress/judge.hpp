@@ -48,7 +48,7 @@ std::optional<Fault> fault_named(std::string_view name);
 inline constexpr double kMostGrowth_eps = 16;
 inline constexpr double kSlab_eps = 8;  // of a plane's distance, as the step bounds its own rounding
 inline constexpr double kMostOffSurface_eps = 64;
-inline constexpr double kEnd_eps = 8;  // of an edge's start and length: so near to its end a corner is active (FACE-6, EDGE-6)
+inline constexpr double kEnd_eps = 10;  // of the extent: so near to an edge's end its corner is active (FACE-6, EDGE-6)
 inline constexpr double kMostRestless_eps = 16;
 inline constexpr double kMostPull_eps = 32;       // of a plane's distance, as the step bounds its own rounding
 inline constexpr double kMostFriction_eps = 64;   // times 1 + mu: as GO may be off its feature
@@ -142,7 +142,7 @@ class Judge {
   void look_at_carried(Tick& tick);
   [[nodiscard]] double descent_from(const Tick& tick) const;
   [[nodiscard]] double descent_at(std::uint32_t corner, const Tick& tick) const;
-  [[nodiscard]] bool is_meant(std::uint32_t corner, const EdgeShape& edge, const Hip& place) const;
+  [[nodiscard]] bool is_meant(std::uint32_t corner, const Hip& place) const;
   bool look_at_descent(Tick& tick, Verdicts& v) const;  // false: it has no say there
   [[nodiscard]] double turned(double edge_length, double depth) const;
   void look_at_place(Tick& tick, Verdicts& v);
