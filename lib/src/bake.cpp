@@ -14,6 +14,7 @@
 #include "bake_core.hpp"
 #include "base/large_pages.hpp"
 #include "base/parallel.hpp"
+#include "base/quantised.hpp"
 #include "base/quantum.hpp"
 #include "base/release.hpp"
 #include "base/vec3.hpp"
@@ -271,6 +272,10 @@ std::size_t likely_file_bytes(const PolygonSoup& soup, const CompileOptions& opt
   for (const HeightImage& image : soup.appearance.images)
     felt += options.heights ? image.values.size() * 5 : 0;  // 2 1/3 numbers a texel, in all levels
   return kHeaderAndInfo + soup.face_count() * per_face + soup.corners.size() * per_side + seen + felt;
+}
+
+double quantum_that_counts(double given, const PolygonSoup& soup) {
+  return at_most_a_share(given, soup.points);
 }
 
 Result<Compiled> compile_by(const PolygonSoup& soup, const CompileOptions& options, RepairStage* repair, PolygonSoup* spare) {

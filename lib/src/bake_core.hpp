@@ -14,4 +14,7 @@ using RepairStage = void(const PolygonSoup& soup, const CompileOptions& options,
 // `repair` null: options.repair does not count. `spare`, the soup itself or null: what may be freed once it has served.
 Result<Compiled> compile_by(const PolygonSoup& soup, const CompileOptions& options, RepairStage* repair, PolygonSoup* spare);
 
+// Of a quantum that a program gives what counts, as of a grid's step (base/quantised.hpp).
+[[nodiscard]] double quantum_that_counts(double given, const PolygonSoup& soup);
+
 }  // namespace fdcg::bake

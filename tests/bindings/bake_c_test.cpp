@@ -2,6 +2,8 @@
 // The compiler's C API: the bytes of compile(), findings as values, memory of the caller's.
 #include "fdcg/bake.h"
 
+#include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <cstring>
 #include <limits>
@@ -81,6 +83,26 @@ TEST_CASE("bake_c: a mesh becomes the nodes that compile() makes of it") {
       fdcg_baked_free(&baked);
       CHECK(baked.bytes == nullptr);
     }
+  }
+}
+
+TEST_CASE("bake_c: of a quantum a thousandth of the largest coordinate counts") {
+  const bake::PolygonSoup soup = ico_sphere(2);
+  double largest = 0;
+  for (const bake::Vec3& p : soup.points)
+    largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+  const Arrays mesh(soup);
+  for (const double quantum : {1e-4 * largest, 0.5 * largest}) {
+    fdcg_bake_options options = fdcg_make_bake_options();
+    options.quantum = quantum;
+    fdcg_baked baked = fdcg_make_baked();
+    fdcg_error error = {};
+    REQUIRE(mesh.bake(options, nullptr, 0, &baked, &error) == FDCG_OK);
+    fdcg_header header;
+    std::memcpy(&header, baked.bytes, sizeof header);
+    CHECK(header.quantum == std::min(quantum, 1e-3 * largest));
+    CHECK(header.node_count > soup.face_count() / 2);  // the sphere is still one
+    fdcg_baked_free(&baked);
   }
 }
 

@@ -36,7 +36,8 @@ typedef struct fdcg_bake_options {
   uint32_t real_bytes;         /**< of the graph's numbers: 8 or 4 */
   double metres_per_unit;      /**< of the points */
   double density_kg_per_m3;    /**< 0: not known */
-  double quantum;              /**< points are known to within this, in their units; 0: to the last bit */
+  double quantum;              /**< points are known to within this, in their units, of which 1/1000 of the
+                                    largest coordinate counts at most; 0: to the last bit */
   uint32_t merges;             /**< 1: coplanar faces become one node; 0 */
   uint32_t triangles;          /**< 1: every node is one triangle, for deform.h; 0 */
   uint32_t orients;            /**< 1: makes the winding consistent and outward first; 0 */

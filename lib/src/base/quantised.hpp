@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The quantum of coordinates that a format stores as multiples of a grid step (Draco, KHR_mesh_quantization).
+// The quantum of coordinates that a format stores as multiples of a grid step (Draco, KHR_mesh_quantization), or that a program
+// gives.
 #pragma once
 
 #include <algorithm>

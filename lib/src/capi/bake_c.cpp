@@ -70,10 +70,10 @@ PolygonSoup soup_of(const Input& input, double quantum) {
   PolygonSoup soup;
   soup.name = "mesh";
   soup.relative_quantum = quantum > 0 ? 0 : 0x1p-53;
-  soup.absolute_quantum = quantum;
   soup.points.resize(input.point_count);
   for (std::size_t i = 0; i < soup.points.size(); ++i)
     soup.points[i] = {input.points[3 * i], input.points[3 * i + 1], input.points[3 * i + 2]};
+  soup.absolute_quantum = quantum_that_counts(quantum, soup);
   soup.face_first.reserve(input.face_count + 1);
   soup.face_first.push_back(0);
   std::uint64_t corner_count = 0;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "stress_decimals.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "meshes.hpp"
@@ -56,6 +57,15 @@ PolygonSoup some_body(Random& random) {
   }
 }
 
+constexpr double kLargestShare = 1e-3;  // of the largest coordinate, as of a grid's step: whoever reads the file stops there
+
+double largest_coordinate(const PolygonSoup& soup) {
+  double largest = 0;
+  for (const Vec3& p : soup.points)
+    largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+  return largest;
+}
+
 }  // namespace
 
 Body decimal_bodies(Random& random, bake::Precision precision) {
@@ -65,7 +75,7 @@ Body decimal_bodies(Random& random, bake::Precision precision) {
   for (Vec3& p : soup.points)
     p = {std::round(p.x / step) * step, std::round(p.y / step) * step, std::round(p.z / step) * step};
   soup = triangulated(soup, random.bits());
-  soup.absolute_quantum = step / 2;
+  soup.absolute_quantum = std::min(step / 2, kLargestShare * largest_coordinate(soup));
   Body body;
   body.options.precision = precision;
   body.options.coplanar.kind = bake::Coplanar::Kind::quantum;
