@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // What verification costs a face, beside reading the same bytes: SAFE and FULL, on spheres of 70 k, 1 M and (--large) 3 M
 // triangles in memory. Processor time of one thread, the least of some rounds taken in turns. Exit code 1 where a bar does not
-// hold for f64 with stored planes: SAFE at half of memory's rate and 30 ns a face, FULL at 60.
+// hold for f64 with stored planes: SAFE at 30 ns a face and, of a graph that no cache holds, at half of memory's rate, FULL
+// at 60.
 #include <ctime>
 
 #include <algorithm>
@@ -19,6 +20,7 @@ namespace {
 
 constexpr int kRounds = 9;
 constexpr double kSafeBar_ns = 30, kFullBar_ns = 60, kRateBar = 0.5;
+constexpr std::uint64_t kCached = 100'000'000;  // bytes; more is read from memory
 
 double processor_ns() {
   timespec now;
@@ -92,7 +94,8 @@ int main(int argc, char** argv) {
         const BenchGraph graph(make_body(Body::sphere, parts), options);
         const Costs costs = measure(graph.view(), &sum);
         const bool is_judged = precision == fdcg::bake::Precision::f64 && is_stored;
-        const bool is_within = costs.safe <= kSafeBar_ns && costs.full <= kFullBar_ns && costs.read / costs.safe >= kRateBar;
+        const bool is_rate_held = graph.view().header->file_bytes <= kCached || costs.read / costs.safe >= kRateBar;
+        const bool is_within = costs.safe <= kSafeBar_ns && costs.full <= kFullBar_ns && is_rate_held;
         std::printf("%9u %4s %8s %6.1f | %5.1f %8.1f %5.1f %5.1f           | %.2f%s\n", graph.view().header->source_face_count,
                     precision == fdcg::bake::Precision::f64 ? "f64" : "f32", is_stored ? "stored" : "derived",
                     graph.bytes_per_face(), costs.read, costs.checksum, costs.safe, costs.full, costs.read / costs.safe,
