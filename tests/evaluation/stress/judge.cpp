@@ -130,7 +130,11 @@ void Judge::look_at_growth(Tick& tick, Verdicts& v) const {
   const Hip start = hip_of(tick.before.state == FDCG_FREE ? tick.before.hip : tick.before.god_object);
   if (square_distance(tick.god_object, tick.hip) <= square_distance(start, tick.hip)) return;
   double growth = static_cast<double>(long_length(tick.god_object, tick.hip) - long_length(start, tick.hip)) - deviation_;
-  if (tick.before.state == FDCG_FREE && deviation_ > 0) growth -= slab_around(start);
+  // Met on a way, in a tick that began free, or let the contact go and met another face.
+  const bool may_have_met =
+      tick.before.state == FDCG_FREE ||
+      (tick.after.state == FDCG_FACE && (tick.before.state != FDCG_FACE || tick.before.feature != tick.after.feature));
+  if (may_have_met && deviation_ > 0) growth -= slab_around(start);
   v.worst_growth_eps = std::max(v.worst_growth_eps, growth / tick.rounding);
   if (growth > kMostGrowth_eps * tick.rounding) tick.faults |= bit(Fault::growth);
 }
@@ -381,7 +385,7 @@ void Judge::look_at_owed_force(Tick& tick) {
       (tick.result.flags & FDCG_RESULT_SWEEP_BOUND) == 0)
     return;
   if (specimen_.inside->where(tick.hip) != InsideGrid::Where::inside) return;
-  const double depth = specimen_.inside->distance_to_surface(tick.hip) - deviation_;
+  const double depth = specimen_.inside->distance_to_surface(tick.hip) - moved_inside();
   if (depth > kShallow_eps * epsilon_ * specimen_.inside->size()) tick.faults |= bit(Fault::no_force);
 }
 
@@ -406,7 +410,7 @@ void Judge::look_inside(Tick& tick, Verdicts& v) {
   const bool is_on_its_way = (tick.result.flags & FDCG_RESULT_SWEEP_BOUND) != 0;  // may start on the surface
   is_known_outside_ = is_on_its_way;                                              // once is enough
   const double size = specimen_.inside->size();
-  const double depth = specimen_.inside->distance_to_surface(tick.god_object) - deviation_;
+  const double depth = specimen_.inside->distance_to_surface(tick.god_object) - moved_inside();
   v.worst_inside_eps = std::max(v.worst_inside_eps, depth / (epsilon_ * size));
   if (depth > (is_on_its_way ? kMostOffSurface_eps * tick.rounding : kShallow_eps * epsilon_ * size)) {
     tick.faults |= bit(Fault::push_through);

@@ -160,6 +160,8 @@ class Judge {
   bool is_let_off(const Hip& point);
   void look_inside(Tick& tick, Verdicts& v);
   void look_at_owed_force(Tick& tick);
+  // How deep inside of the mesh a HIP may be that is outside of the graph's surface.
+  [[nodiscard]] double moved_inside() const { return deviation_ > moved_ ? deviation_ : moved_; }
 
   const Specimen& specimen_;
   bool owes_force_;
