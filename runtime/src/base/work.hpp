@@ -20,6 +20,9 @@ inline constexpr uint32_t kRuleWork = FDCG_RULE_WORK;
 #endif
 inline constexpr uint32_t kSweepWork = FDCG_SWEEP_WORK;
 
+// Of one step, all questions whether a way that met nothing has come in all the same (missed_way.hpp).
+inline constexpr uint32_t kMissedWork = 4000;
+
 // Of one look for a clear ball.
 inline constexpr uint32_t kClearWork = 1200;
 

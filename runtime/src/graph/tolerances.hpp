@@ -61,6 +61,13 @@ inline Real slab_depth(double deviation, Real bound) {
   return Real(deviation) * (1 + 4 * RealLimits<Real>::kEpsilon) + bound;
 }
 
+// FREE-9: so near to a node's plane and its sides, from either side, a way may have come in that does not enter it. `bound`: as
+// of slab_depth, of which the actual rounding is at most a quarter; the god-object is moved no farther to meet the node.
+template <class Real>
+inline Real missed_reach(double deviation, Real bound) {
+  return slab_depth(2 * deviation, bound / 4);
+}
+
 // ---- A place on an edge, or at its end
 
 // FACE-6, EDGE-6: a place so near to an end of an edge is the vertex: more than the rounding of a place on the edge's line, so

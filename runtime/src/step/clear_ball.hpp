@@ -128,7 +128,7 @@ template <class Geometry, class Real = typename Geometry::Real>
 [[gnu::noinline]] bool passes_near_nodes(const GraphView<Geometry>& graph, const ContactInternals& inner,
                                          const Vec3<Real>& from, const Vec3<Real>& to) {
   const Real to_bound = plane_rounding_bound(graph, to);
-  const Real slab = slab_depth(graph.max_deviation(), plane_rounding_bound(graph, from));
+  const Real slab = slab_depth(2 * graph.max_deviation(), plane_rounding_bound(graph, from));
   for (uint32_t i = 0; i < inner.clear_ball.near_count; ++i) {
     if (!surely_passes(graph.node(inner.near.node[i]).plane(), from, to, to_bound, slab)) return false;
   }

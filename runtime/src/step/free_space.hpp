@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// The way from a god-object in free space to the HIP (contact-model FREE-1 to FREE-8, LEAVE-1, BOUND-2): whether a sweep is
+// The way from a god-object in free space to the HIP (contact-model FREE-1 to FREE-9, LEAVE-1, BOUND-2): whether a sweep is
 // needed, the contact with what it met, and the work carried over to later ticks. docs/internals/sweep.md has the sequence.
 #pragma once
 
 #include "step/clear_ball.hpp"
 #include "step/contact_internals.hpp"
-#include "step/sweep.hpp"
+#include "step/missed_way.hpp"
 
 namespace fdcg {
 
@@ -39,15 +39,34 @@ template <class Geometry, class Real = typename Geometry::Real>
   }
 }
 
+// Work and state of free space carried over between ticks; all but the work is part of the contact.
+struct FreeSpace {
+  ContactInternals* inner;
+  bool looks_for_balls;
+  uint32_t work_left;
+  uint32_t missed_work_left;
+  const fdcg_contact* begun;  // with HIP and god-object as the tick found them
+};
+
+// contact-model FREE-9. Faces that move are triangles, none of them merged.
+template <class Geometry, class Real = typename Geometry::Real>
+inline void take_what_was_missed(const Sweep<Geometry>& sweep, const GraphView<Geometry>& graph, const Vec3<Real>& to,
+                                 FirstHit<Real>* first, FreeSpace* space) {
+  if constexpr (Geometry::kKeepsDirections) {
+    if (graph.has_inexact_nodes() && first->feature.is_free()) *first = missed_by(sweep, graph, to, &space->missed_work_left);
+  }
+}
+
 // contact-model FREE-2, BOUND-2: goes on with a sweep of an earlier tick. False: it is still not done, and the god-object has
 // not moved.
 template <class Geometry, class Real = typename Geometry::Real>
-[[gnu::noinline, gnu::cold]] bool finish_carried_sweep(Walk<Geometry>& walk, CarriedSweep* carried, uint32_t* work_left) {
+[[gnu::noinline, gnu::cold]] bool finish_carried_sweep(Walk<Geometry>& walk, FreeSpace* space) {
+  CarriedSweep* const carried = &space->inner->sweep;
   const Vec3<Real> target = {Real(carried->target[0]), Real(carried->target[1]), Real(carried->target[2])};
   const Vec3<Real> to = FDCG_MUTANT("carried-way-to-the-newest-hip") ? walk.hip : target;
   FirstHit<Real> first = {Real(carried->fraction), carried->node, {carried->state, carried->feature}};
   Sweep<Geometry> sweep(walk.graph, walk.god_object, walk.god_object, to, {carried->left_state, carried->left_feature},
-                        work_left);
+                        &space->work_left);
   // Nearest boxes first once more, with the work of a whole tick: in order fans are looked at node by node.
   const bool is_done = (carried->next_leaf == 0 && sweep.run(&first)) || sweep.run_in_order(&first, &carried->next_leaf);
   carried->fraction = first.fraction;
@@ -56,17 +75,10 @@ template <class Geometry, class Real = typename Geometry::Real>
   carried->feature = first.feature.index;
   if (!is_done) return false;
   carried->is_carried = 0;
+  take_what_was_missed(sweep, walk.graph, to, &first, space);
   arrive(walk, sweep, to, first);
   return true;
 }
-
-// Work and state of free space carried over between ticks; all but the work is part of the contact.
-struct FreeSpace {
-  ContactInternals* inner;
-  bool looks_for_balls;
-  uint32_t work_left;
-  const fdcg_contact* begun;  // with HIP and god-object as the tick found them
-};
 
 // Where there was no ball, or none that would hold the next way too, the next looks wait for longer and longer: there a sweep
 // is cheaper.
@@ -129,7 +141,7 @@ inline uint32_t sweep_with_loan(Walk<Geometry>& walk, Feature left, const Vec3<R
   const bool may_look = FDCG_WITH_CLEAR_BALLS && space->looks_for_balls && left.is_free();
   if (!(may_look && is_in_clear_ball(*ball, widen(walk.hip)))) end_clear_ball(ball);
   if (carried->is_carried != 0) {
-    if (!finish_carried_sweep(walk, carried, &space->work_left)) return FDCG_RESULT_SWEEP_BOUND;
+    if (!finish_carried_sweep(walk, space)) return FDCG_RESULT_SWEEP_BOUND;
     if (!walk.active.is_free()) return 0;
   }
   const Vec3<Real> to = walk.hip, from = left.is_free() ? near_start(walk.graph, walk.god_object, to) : walk.god_object;
@@ -150,6 +162,7 @@ inline uint32_t sweep_with_loan(Walk<Geometry>& walk, Feature left, const Vec3<R
       FDCG_WITH_CLEAR_BALLS && ball->radius2 > 0 && ball->lists_all != 0;  // then only what it lists can be met
   if (is_in_ball) sweep.run_near(space->inner->near.node, ball->near_count, &first);
   if (is_in_ball || sweep.run(&first)) {
+    take_what_was_missed(sweep, walk.graph, to, &first, space);
     arrive(walk, sweep, to, first);
     if (!walk.active.is_free()) {
       end_clear_ball(ball);
@@ -171,7 +184,7 @@ inline uint32_t sweep_with_loan(Walk<Geometry>& walk, Feature left, const Vec3<R
               1,
               0};
   walk.active = walk.seat = kFree;
-  if (space->work_left == 0 || !finish_carried_sweep(walk, carried, &space->work_left)) return FDCG_RESULT_SWEEP_BOUND;
+  if (space->work_left == 0 || !finish_carried_sweep(walk, space)) return FDCG_RESULT_SWEEP_BOUND;
   return 0;
 }
 

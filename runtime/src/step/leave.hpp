@@ -24,9 +24,6 @@ template <class Geometry, class Real = typename Geometry::Real>
     if (side_of(walk.graph, node, walk.god_object, bound, &walk.work_left) >= 0) break;
     walk.god_object = walk.god_object + outward * step;
   }
-  // In front of its corners too, and so of the mesh that it was merged from.
-  const Real lacks = Real(walk.graph.max_deviation()) - distance_from(node, walk.god_object);
-  if (node.is_inexact() && lacks > 0) walk.god_object = walk.god_object + outward * lacks;
 }
 
 // Call before the sweep that leaves `left`, whose rule has found the HIP outside.

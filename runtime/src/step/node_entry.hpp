@@ -73,8 +73,7 @@ class NodeEntry {
     // On a face's plane: a corner of that face and of a neighbour may lie off both planes.
     const double deviation = graph_.max_deviation();
     slab_ = slab_depth(left_.state == FDCG_FACE ? 2 * deviation : deviation, from_bound_);
-    // A step clear is of one deviation, at a concave edge of one for each face.
-    if constexpr (FDCG_WITH_INEXACT_NODES) glance_slab_ = slab_ + 3 * Real(deviation);
+    if constexpr (FDCG_WITH_INEXACT_NODES) glance_slab_ = slab_depth(2 * deviation, from_bound_);
   }
 
   // Whether all of the way is known to be over the face that it meets first; not told of one met in a tick before.
@@ -90,11 +89,10 @@ class NodeEntry {
     const NodeRef<Geometry> node = graph_.node(n);
     const Real rounding = side_rounding(from_bound_, to_bound_), off = slab_ - from_bound_;  // corners off their planes
     Real begin = least, end = 1;
-    uint32_t side_left;
-    if (!clip_to(node, rounding + off, &begin, &end, &side_left)) return kNever;
+    if (!clip_to(node, rounding + off, &begin, &end)) return kNever;
     if (fraction > end) {  // come in after the way has left the node: where it surely is still over it
       Real sharp_begin = least, sharp_end = 1;
-      fraction = clip_to(node, 0, &sharp_begin, &sharp_end, &side_left) ? sharp_end : end;
+      fraction = clip_to(node, 0, &sharp_begin, &sharp_end) ? sharp_end : end;
     }
     return fraction < begin ? begin : fraction;
   }
@@ -120,103 +118,9 @@ class NodeEntry {
   Feature left_;
   uint32_t* work_left_;
   Real slab_;
-  Real glance_slab_;  // so far behind a node the god-object may be that was in front of it before it stepped clear
+  Real glance_slab_;  // no less than slab_, and than missed_reach
   FirstHit<Real> best_;
-
-  // On which side of the line through two corners of a node the way passes: 1 on the outer, where the node's loop runs from the
-  // first to the second; 0 where the two meet exactly. What two neighbours say of their edge are exact opposites: so are the
-  // rounded products.
-  [[nodiscard, gnu::noinline, gnu::cold]] int exact_orientation(NodeRef<Geometry> node, uint32_t start, uint32_t end) const {
-    return orient3d_sign(from_, to_, graph_.corner_point(node.corner(start)), graph_.corner_point(node.corner(end)),
-                         work_left_);
-  }
-
-  // The face that the way leaves, or that face at the edge which it is in front of since LEAVE-2, if the corner is one of its
-  // own: the way meets nothing behind that. Else FDCG_NONE.
-  [[nodiscard, gnu::noinline, gnu::cold]] uint32_t left_face_before_way(uint32_t corner) const {
-    const bool is_edge = left_.state == FDCG_EDGE;
-    uint32_t n = left_.state == FDCG_FACE ? left_.index : FDCG_NONE;
-    for (uint32_t k = 0; k < 2; ++k) {
-      if (is_edge) n = graph_.connection(left_.index).node(k);
-      if (n == FDCG_NONE) break;
-      const NodeRef<Geometry> face = graph_.node(n);
-      if (side(face, to_, to_bound_) >= 0) return has_corner(face, corner) ? n : FDCG_NONE;
-    }
-    return FDCG_NONE;
-  }
-
- private:
-  static constexpr uint32_t kLastBit = 63;
-
-  // Cuts the part of the way from *begin to *end down to what is over a node, its sides moved `outwards`. False: nothing is.
-  // *side_left: over which side the way leaves before *end, if over any.
-  [[nodiscard, gnu::noinline, gnu::cold]] bool clip_to(NodeRef<Geometry> node, Real outwards, Real* begin, Real* end,
-                                                       uint32_t* side_left) const {
-    spend(work_left_, kSideWork * node.side_count());
-    bool is_beside = false;
-    for (uint32_t k = 0; k < node.side_count(); ++k) {
-      const auto& plane = node.voronoi_plane(k);
-      const Real s0 = plane.distance(from_) - outwards, s1 = plane.distance(to_) - outwards;
-      const bool begins_inside = s0 <= 0, ends_inside = s1 <= 0;
-      is_beside = is_beside || !(begins_inside || ends_inside);
-      if (begins_inside == ends_inside) continue;
-      const Real at = s0 / (s0 - s1);
-      if (begins_inside && at < *end) *end = at, *side_left = k;
-      if (ends_inside && at > *begin) *begin = at;
-    }
-    return !is_beside && *begin <= *end;
-  }
-
-  // Entered from its front: the way begins in front of the plane, ends behind it, and passes inside the loop. A node whose
-  // corners lie off its plane is a slab: a way that begins within the slab begins in front. In a graph with such nodes this
-  // holds for all of them: a way that leaves an inexact node may begin behind the exact planes of its neighbours.
-  [[gnu::noinline]] void try_node(uint32_t n) {
-    spend(work_left_, kNodeWork);
-    const NodeRef<Geometry> node = graph_.node(n);
-    if (FDCG_MUTANT("sweep-blind") && n % 5 == 3) return;
-    if (distance_from(node, to_) > to_bound_ || (is_left_out(n, node) && !FDCG_MUTANT("leave-out")))
-      return;  // before any exact sign is computed
-    const Lies lies = lies_surely(node);
-    if (lies == Lies::beside) return;
-    const Real end_side = side(node, to_, to_bound_);
-    if (!(end_side < 0)) return;
-    Real start_side = side(node, from_, from_bound_);
-    const bool is_slab = graph_.has_inexact_nodes();
-    if (is_slab && start_side < -slab_ && stood_in_front_of(node)) start_side = -slab_;
-    if (start_side < (is_slab ? -slab_ : Real(0)) && !FDCG_MUTANT("enters-from-behind")) {
-      if (start_side >= -from_bound_ && !FDCG_MUTANT("seat")) try_other_wall(n, node);
-      return;
-    }
-    if (start_side < 0 && (left_lies_behind(node) || begins_beside(node))) return;
-    const bool is_over = kTellsOver && lies == Lies::over && start_side >= 0;  // where it meets the plane, too
-    const Real fall = start_side - end_side, rounded = start_side > 0 ? start_side / fall : Real(0);
-    const Real noise = from_bound_ + to_bound_ + (is_slab ? slab_ : Real(0));
-    const bool is_grazing = noise > kGrazing<Real> * fall;
-    const bool may_be_beside = is_grazing || is_slab;  // where it meets the plane
-    const Real least = !may_be_beside ? rounded : start_side > noise ? (start_side - noise) / fall : Real(0);
-    if (!is_before_best(least, n)) return;
-    const Real fraction = may_be_beside && !is_over ? part_over(n, rounded, least) : rounded;  // costs less than what follows
-    if (!is_before_best(fraction, n)) return;
-    uint64_t met_exactly = 0;
-    if (!is_over && !passes_inside(node, rounded, &met_exactly)) {
-      // Along a node, in its slab: seen edge-on its loop is a line, which the way may pass on either side.
-      if (!is_grazing || !is_slab || !is_near_inexact(node)) return;
-      const Real thick = (slab_ - from_bound_) + side_rounding(from_bound_, to_bound_) / 2;
-      Real begin = start_side > thick ? (start_side - thick) / fall : Real(0);
-      const bool is_below = start_side + thick < fall;  // at the way's end, or, along the node, all the way
-      Real end = !is_below ? Real(1) : fall != 0 ? (start_side + thick) / fall : Real(-1);
-      uint32_t side_left = FDCG_NONE;
-      if (!clip_to(node, 0, &begin, &end, &side_left) || is_past_all_ends(node, point_at(fraction))) return;
-      if (side_left != FDCG_NONE && ends_in_air_beyond(node, side_left)) return;  // out of the slab
-      met_exactly = 0;
-    }
-    if (FDCG_MUTANT("distance-tolerance") && left_.state != FDCG_FREE && fraction < Real(1e-4)) return;
-    best_.fraction = fraction;
-    best_.node = n;
-    best_.feature = {FDCG_FACE, n};
-    is_over_.set(is_over);
-    if (met_exactly && !FDCG_MUTANT("exact-feature")) best_.feature = on_rim(node, met_exactly, point_at(fraction));
-  }
+  FirstHit<Real> missed_;
 
   // How all of the way lies to a node, by more than rounding. Beside it, beyond one of its sides: neither is the node entered
   // then nor does it hold what the way left. So lie most nodes that a sweep tries, and it needs no exact sign and no corner of
@@ -239,43 +143,152 @@ class NodeEntry {
     return is_inside ? Lies::over : Lies::unsure;
   }
 
-  // Of a way that leaves a node's slab over a convex side: whether it ends in front of the face across by more than that one's
-  // slab. No edge would hold it (EDGE-1), and it has come below neither face.
-  [[nodiscard, gnu::noinline, gnu::cold]] bool ends_in_air_beyond(NodeRef<Geometry> node, uint32_t k) const {
-    return graph_.connection(node.connection(k)).type() == FDCG_CONVEX &&
-           distance_from(graph_.node(node.across(k)), to_) > slab_;
-  }
-  // Whether the god-object was in front of a node, or in its slab, before it stepped clear of what it left.
-  [[nodiscard, gnu::noinline, gnu::cold]] bool stood_in_front_of(NodeRef<Geometry> node) const {
-    return distance_from(node, stood_) >= -slab_;
-  }
-  // Of a way that begins behind a plane by no more than the slab: whether that is not over the node, but in the air beside it,
-  // or below a wall that stands at its side, from where it does not come in front of the node.
-  [[nodiscard, gnu::noinline, gnu::cold]] bool begins_beside(NodeRef<Geometry> node) const {
-    for (uint32_t k = 0; k < node.side_count(); ++k) {
-      if (!(distance_beyond(node, k, from_) > slab_)) continue;
-      if (ends_in_air_beyond(node, k)) return true;
-      const ConnectionRef<Geometry> connection = graph_.connection(node.connection(k));
-      if (connection.type() == FDCG_CONCAVE && distance_from(graph_.node(node.across(k)), from_) < -slab_) return true;
-    }
-    return false;
+  // On which side of the line through two corners of a node the way passes: 1 on the outer, where the node's loop runs from the
+  // first to the second; 0 where the two meet exactly. What two neighbours say of their edge are exact opposites: so are the
+  // rounded products.
+  [[nodiscard, gnu::noinline, gnu::cold]] int exact_orientation(NodeRef<Geometry> node, uint32_t start, uint32_t end) const {
+    return orient3d_sign(from_, to_, graph_.corner_point(node.corner(start)), graph_.corner_point(node.corner(end)),
+                         work_left_);
   }
 
-  // A place inside of all sides is between the ends of one, the nearest; but of corners in one line, all the line is inside.
-  [[nodiscard, gnu::noinline, gnu::cold]] bool is_past_all_ends(NodeRef<Geometry> node, const Vec3<Real>& x) const {
-    for (uint32_t k = 0; k < node.side_count(); ++k) {
-      if (past_ends(node, k, x, Real(1)) <= slab_) return false;
+  // The same, rounded where that cannot matter.
+  [[nodiscard, gnu::noinline, gnu::cold]] int orientation(NodeRef<Geometry> node, uint32_t start, uint32_t end) const {
+    const int sign = sure_orientation(graph_.corner_point(node.corner(start)), graph_.corner_point(node.corner(end)));
+    return sign != 0 ? sign : exact_orientation(node, start, end);
+  }
+  // The same where rounding cannot matter; else 0.
+  [[nodiscard]] int sure_orientation(const Vec3<Real>& start, const Vec3<Real>& end) const {
+    spend(work_left_, kOrientationWork);
+    const Vec3<Real> v = start - from_, w = end - from_;
+    const Real det = dot(cross(v, w), way_);
+    const Real bound = orientation_rounding(v, w, way_);
+    return det > bound ? 1 : det < -bound ? -1 : 0;
+  }
+
+  // How often the line passes through the loop, convex or not, from its front: through so many more of the fan's triangles from
+  // the front than from behind. What neighbours share are the signs: a line that slips out of one is in the other.
+  [[nodiscard, gnu::noinline, gnu::cold]] int times_wound_by(NodeRef<Geometry> node) const {
+    int times = 0, first = orientation(node, 0, 1);
+    for (uint32_t k = 1; k + 1 < node.side_count(); ++k) {
+      const bool is_last = k + 2 == node.side_count();
+      const int sign = orientation(node, 0, k + 1);
+      const int diagonal = sign != 0 || is_last ? sign : -1;  // a line through a diagonal is on one side of it for both
+      const int side = orientation(node, k, k + 1);
+      times += first <= 0 && side <= 0 && diagonal >= 0;
+      times -= first > 0 && side > 0 && diagonal < 0;
+      first = diagonal;
     }
+    return times;
+  }
+
+  // The face that the way leaves, or that face at the edge which it is in front of since LEAVE-2, if the corner is one of its
+  // own: the way meets nothing behind that. Else FDCG_NONE.
+  [[nodiscard, gnu::noinline, gnu::cold]] uint32_t left_face_before_way(uint32_t corner) const {
+    const bool is_edge = left_.state == FDCG_EDGE;
+    uint32_t n = left_.state == FDCG_FACE ? left_.index : FDCG_NONE;
+    for (uint32_t k = 0; k < 2; ++k) {
+      if (is_edge) n = graph_.connection(left_.index).node(k);
+      if (n == FDCG_NONE) break;
+      const NodeRef<Geometry> face = graph_.node(n);
+      if (side(face, to_, to_bound_) >= 0) return has_corner(face, corner) ? n : FDCG_NONE;
+    }
+    return FDCG_NONE;
+  }
+
+ private:
+  static constexpr uint32_t kLastBit = 63;
+
+  // Cuts the part of the way from *begin to *end down to what is over a node, its sides moved `outwards`. False: nothing is.
+  [[nodiscard, gnu::noinline, gnu::cold]] bool clip_to(NodeRef<Geometry> node, Real outwards, Real* begin, Real* end) const {
+    spend(work_left_, kSideWork * node.side_count());
+    bool is_beside = false;
+    for (uint32_t k = 0; k < node.side_count(); ++k) {
+      const auto& plane = node.voronoi_plane(k);
+      const Real s0 = plane.distance(from_) - outwards, s1 = plane.distance(to_) - outwards;
+      const bool begins_inside = s0 <= 0, ends_inside = s1 <= 0;
+      is_beside = is_beside || !(begins_inside || ends_inside);
+      if (begins_inside == ends_inside) continue;
+      const Real at = s0 / (s0 - s1);
+      if (begins_inside && at < *end) *end = at;
+      if (ends_inside && at > *begin) *begin = at;
+    }
+    return !is_beside && *begin <= *end;
+  }
+
+  // Entered from its front: the way begins in front of the plane, ends behind it, and passes inside the loop. A node whose
+  // corners lie off its plane is a slab: a way that begins within the slab begins in front. In a graph with such nodes this
+  // holds for all of them: a way that leaves an inexact node may begin behind the exact planes of its neighbours.
+  [[gnu::noinline]] void try_node(uint32_t n) {
+    spend(work_left_, kNodeWork);
+    const NodeRef<Geometry> node = graph_.node(n);
+    if (FDCG_MUTANT("sweep-blind") && n % 5 == 3) return;
+    if (distance_from(node, to_) > to_bound_ || (is_left_out(n, node) && !FDCG_MUTANT("leave-out")))
+      return;  // before any exact sign is computed
+    const Lies lies = lies_surely(node);
+    if (lies == Lies::beside) return;
+    const Real end_side = side(node, to_, to_bound_);
+    if (!(end_side < 0)) return;
+    const Real start_side = side(node, from_, from_bound_);
+    if (!enters(n, node, lies, start_side, end_side) && graph_.has_inexact_nodes()) may_miss(n, node, start_side, end_side);
+  }
+
+  // What try_node() asks in the end.
+  [[nodiscard]] bool enters(uint32_t n, NodeRef<Geometry> node, Lies lies, Real start_side, Real end_side) {
+    const bool is_slab = graph_.has_inexact_nodes();
+    if (start_side < (is_slab ? -slab_ : Real(0)) && !FDCG_MUTANT("enters-from-behind")) {
+      if (start_side >= -from_bound_ && !FDCG_MUTANT("seat")) try_other_wall(n, node);
+      return false;
+    }
+    if (start_side < 0 && left_lies_behind(node)) return false;
+    const bool is_over = kTellsOver && lies == Lies::over && start_side >= 0;  // where it meets the plane, too
+    const Real fall = start_side - end_side, rounded = start_side > 0 ? start_side / fall : Real(0);
+    const Real noise = from_bound_ + to_bound_ + (is_slab ? slab_ : Real(0));
+    const bool is_grazing = noise > kGrazing<Real> * fall;
+    const bool may_be_beside = is_grazing || is_slab;  // where it meets the plane
+    const Real least = !may_be_beside ? rounded : start_side > noise ? (start_side - noise) / fall : Real(0);
+    if (!is_before_best(least, n)) return false;
+    const Real fraction = may_be_beside && !is_over ? part_over(n, rounded, least) : rounded;  // costs less than what follows
+    if (!is_before_best(fraction, n)) return false;
+    uint64_t met_exactly = 0;
+    if (!is_over && !passes_inside(node, rounded, &met_exactly)) return false;
+    if (FDCG_MUTANT("distance-tolerance") && left_.state != FDCG_FREE && fraction < Real(1e-4)) return false;
+    best_.fraction = fraction;
+    best_.node = n;
+    best_.feature = {FDCG_FACE, n};
+    is_over_.set(is_over);
+    if (met_exactly && !FDCG_MUTANT("exact-feature")) best_.feature = on_rim(node, met_exactly, point_at(fraction));
     return true;
   }
 
-  // Whether a node's corners lie off its plane, or off a neighbour's: over that one a way in its slab may come below this one's
-  // rim.
-  [[nodiscard]] bool is_near_inexact(NodeRef<Geometry> node) const {
-    bool is_near = node.is_inexact();
-    for (uint32_t k = 0; k < node.side_count(); ++k)
-      is_near = is_near || (node.across(k) != FDCG_NONE && graph_.node(node.across(k)).is_inexact());
-    return is_near;
+  // Of a node that the way does not enter, and ends behind: whether the two come so near to one another that the mesh of which
+  // it was merged may have been passed there. A way that ends so near to the plane is as well outside.
+  [[gnu::noinline, gnu::cold]] void may_miss(uint32_t n, NodeRef<Geometry> node, Real start_side, Real end_side) {
+    const Real reach = missed_reach(graph_.max_deviation(), from_bound_), fall = start_side - end_side;
+    if (best_.node != FDCG_NONE || start_side < -reach || end_side > -reach) return;
+    Real begin = start_side > reach ? (start_side - reach) / fall : Real(0);
+    Real end = start_side + reach < fall ? (start_side + reach) / fall : Real(1);
+    if (!clip_to(node, reach, &begin, &end)) return;
+    const Real at = start_side > 0 ? start_side / fall : Real(0), fraction = at < begin ? begin : at < end ? at : end;
+    if (!(fraction < missed_.fraction)) return;
+    // Over the node; or beside it, and then by its edge: inside of all sides, but for so much, is beyond a sharp corner too.
+    const Vec3<Real> point = point_at(fraction);
+    Feature met = {FDCG_FACE, n};
+    Real nearest2 = 4 * reach * reach;
+    bool is_over = true;
+    for (uint32_t k = 0; k < node.side_count(); ++k) {
+      is_over = is_over && distance_beyond(node, k, point) <= 0;
+      const Real off2 = squared_distance_from_side(node, k, point);
+      if (off2 < nearest2) nearest2 = off2, met = {FDCG_EDGE, node.connection(k)};
+    }
+    if (is_over) met = {FDCG_FACE, n};
+    if (is_over || met.state == FDCG_EDGE) missed_ = {fraction, n, met};
+  }
+  [[nodiscard, gnu::noinline, gnu::cold]] Real squared_distance_from_side(NodeRef<Geometry> node, uint32_t k,
+                                                                          const Vec3<Real>& x) const {
+    const EdgeLine<Real> line(graph_, node, k);
+    const Real u = line.parameter(x);
+    const Vec3<Real> off = x - (line.start + line.direction * (u < 0 ? Real(0) : u > line.length ? line.length : u));
+    return dot(off, off);
   }
 
   [[nodiscard, gnu::noinline]] Real side(NodeRef<Geometry> node, const Vec3<Real>& x, Real bound) const {
@@ -383,20 +396,6 @@ class NodeEntry {
     return side(plane, point, plane_rounding_bound(graph_, point));
   }
 
-  // The same, rounded where that cannot matter.
-  [[nodiscard, gnu::noinline, gnu::cold]] int orientation(NodeRef<Geometry> node, uint32_t start, uint32_t end) const {
-    const int sign = sure_orientation(graph_.corner_point(node.corner(start)), graph_.corner_point(node.corner(end)));
-    return sign != 0 ? sign : exact_orientation(node, start, end);
-  }
-  // The same where rounding cannot matter; else 0.
-  [[nodiscard]] int sure_orientation(const Vec3<Real>& start, const Vec3<Real>& end) const {
-    spend(work_left_, kOrientationWork);
-    const Vec3<Real> v = start - from_, w = end - from_;
-    const Real det = dot(cross(v, w), way_);
-    const Real bound = orientation_rounding(v, w, way_);
-    return det > bound ? 1 : det < -bound ? -1 : 0;
-  }
-
   // A bit for a side; the last one for all beyond.
   FDCG_ONE_COPY static uint64_t bit_of(uint32_t k) { return uint64_t{1} << (k < kLastBit ? k : kLastBit); }
 
@@ -418,7 +417,7 @@ class NodeEntry {
       if (sign == 0) *met_exactly |= bit_of(k);
     }
     if (node.side_count() == 3) remember_corner(node, *met_exactly);
-    return !must_wind || is_wound_by(node);
+    return !must_wind || times_wound_by(node) > 0;
   }
 
   // A line that is not in a triangle's plane and meets two of its sides meets the corner between them; so it does every other
@@ -433,50 +432,22 @@ class NodeEntry {
   }
 
   // Whether a way that crosses the node's plane at `fraction`, outside of this side by its orientation, may pass inside all the
-  // same, where corners lie off their planes. Of a concave side where the way stays in front of the wall that stands there, up
-  // to its slab, and crosses near the side or ends below the node: a way along the groove would pass between the two. So it
-  // would if it came over the next wall, from behind this one's plane, and is in front where it crosses near the side. Two
-  // planes that lie nearly alike meet farther from their edge than their corners lie off them. Of a convex side where the way
-  // does not enter the face across, since it begins behind that one's slab, or leaves what lies behind it, and meets this plane
-  // behind that one's: it would pass between the two. Of a side within one plane where it crosses that on the inner side: the
-  // side's corners need not lie in it. Of any other where the loop as it is, sides in line that bend inwards up
-  // to rounding error included, winds about the way: that is still to be asked, once for all sides.
+  // same, where corners lie off their planes. Of a concave side where the way begins in front of the wall that stands there, or
+  // in its slab, and ends in front of it, and crosses near the side or ends below the node: a way along the groove would pass
+  // between the two. Of any other where the loop as it is, sides in line that bend inwards up to rounding error included, winds
+  // about the way: that is still to be asked, once for all sides.
   [[nodiscard, gnu::noinline, gnu::cold]] bool is_open(NodeRef<Geometry> node, uint32_t k, Real fraction,
                                                        bool* must_wind) const {
     if (!graph_.has_inexact_nodes()) return false;
     spend(work_left_, kNodeWork);
-    const Vec3<Real> point = point_at(fraction);
-    const Real beyond = distance_beyond(node, k, point);
-    const bool is_near = beyond <= slab_;
-    const uint32_t type = graph_.connection(node.connection(k)).type();
-    if (type == FDCG_CONCAVE || (is_near && type == FDCG_CONVEX)) {
+    const bool is_near = distance_beyond(node, k, point_at(fraction)) <= slab_;
+    if (graph_.connection(node.connection(k)).type() == FDCG_CONCAVE) {
       const NodeRef<Geometry> wall = graph_.node(node.across(k));
-      const Real begin = distance_from(wall, from_), crosses = distance_from(wall, point);
-      const bool begins_in_slab = begin >= -slab_;
-      if (type == FDCG_CONVEX ? !(begins_in_slab && (begin >= 0 || !left_lies_behind(wall))) && crosses < 0
-                              : (begins_in_slab || (is_near && crosses >= 0)) && distance_from(wall, to_) >= 0 &&
-                                    (is_near || distance_beyond(node, k, to_) <= 0))
-        return true;
+      const bool is_before = distance_from(wall, from_) >= -slab_ && distance_from(wall, to_) >= 0;
+      if (is_before && (is_near || distance_beyond(node, k, to_) <= 0)) return true;
     }
-    if (type == FDCG_COPLANAR && beyond <= 0) return true;
     *must_wind = true;
     return is_near && node.is_inexact();
-  }
-
-  // Whether the line passes through the loop, convex or not, from its front: through one more of the fan's triangles from the
-  // front than from behind. What neighbours share are the signs: a line that slips out of one is in the other.
-  [[nodiscard, gnu::noinline, gnu::cold]] bool is_wound_by(NodeRef<Geometry> node) const {
-    int times = 0, first = orientation(node, 0, 1);
-    for (uint32_t k = 1; k + 1 < node.side_count(); ++k) {
-      const bool is_last = k + 2 == node.side_count();
-      const int sign = orientation(node, 0, k + 1);
-      const int diagonal = sign != 0 || is_last ? sign : -1;  // a line through a diagonal is on one side of it for both
-      const int side = orientation(node, k, k + 1);
-      times += first <= 0 && side <= 0 && diagonal >= 0;
-      times -= first > 0 && side > 0 && diagonal < 0;
-      first = diagonal;
-    }
-    return times > 0;
   }
 
   // Of a corner between two sides that the line meets, which may be in one line: whether the line meets each diagonal from
@@ -502,10 +473,7 @@ class NodeEntry {
       if (k >= kLastBit && orientation(node, k, node.next(k)) != 0) continue;
       if (!node.is_inexact() && (met_exactly & bit_of(node.previous(k))) != 0 && is_on_line(node, k))
         return {FDCG_VERTEX, node.corner(k)};
-      const EdgeLine<Real> line(graph_, node, k);
-      const Real u = line.parameter(point);
-      const Vec3<Real> off = point - (line.start + line.direction * (u < 0 ? Real(0) : u > line.length ? line.length : u));
-      const Real off2 = dot(off, off);
+      const Real off2 = squared_distance_from_side(node, k, point);
       if (nearest.is_free() || off2 < nearest2) {
         nearest = {FDCG_EDGE, node.connection(k)};
         nearest2 = off2;

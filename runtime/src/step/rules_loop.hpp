@@ -44,13 +44,12 @@ class Trail {
   }
   // A feature has let the god-object go.
   void let_go() { was_let_go_ = true; }
-  // Whether the circle leads through free space, past faces, and the HIP is clearly over none of them; or past edges alone,
-  // each of which lets go. Faces that move may have been squeezed to lines, which are under nothing.
+  // Whether the circle leads through free space, past faces, and the HIP is clearly over none of them. Faces that move may have
+  // been squeezed to lines, which are under nothing.
   [[nodiscard, gnu::noinline, gnu::cold]] bool passes_hip_by(const Walk<Geometry>& walk) const {
     if (!Geometry::kKeepsDirections || !was_let_go_) return false;
-    bool is_beside = false, are_edges = walk.graph.has_inexact_nodes();
+    bool is_beside = false;
     for (int i = 0; i < count_; ++i) {
-      are_edges = are_edges && visited_[i] >> 32 == FDCG_EDGE;
       if (visited_[i] >> 32 != FDCG_FACE) continue;
       const NodeRef<Geometry> node = walk.graph.node(static_cast<uint32_t>(visited_[i]));
       is_beside = false;
@@ -58,7 +57,7 @@ class Trail {
         is_beside = is_beside || distance_beyond(node, k, walk.hip) > walk.hip_bound;
       if (!is_beside) return false;
     }
-    return is_beside || are_edges;
+    return is_beside;
   }
   // Where hops have led to the start: the edge that they went over last.
   void add(Feature edge) { visited_[count_++] = key(edge); }
@@ -224,9 +223,6 @@ Progress move_god_object(Walk<Geometry>& walk, Feature start, Vec3<Real> start_g
       *stalled = gets_on ? 0 : *stalled + (*stalled < most);
       if (gets_on || (*stalled < most && !is_at_start)) {
         progress.flags |= FDCG_RESULT_TRANSITION_BOUND;
-      } else if (walk.graph.has_inexact_nodes() &&
-                 trail.passes_hip_by(walk)) {  // a circle of merged faces may take all the work
-        let_go_to_hip(walk);
       }
       return progress;
     }

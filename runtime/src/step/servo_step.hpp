@@ -124,7 +124,7 @@ template <class Geometry, class Real = typename Geometry::Real>
 [[gnu::noinline, gnu::cold]] void walk_to_hip(Walk<Geometry>& walk, const FaceMove<Real>* move, uint32_t transitions,
                                               const fdcg_params& params, fdcg_contact* contact, fdcg_result* result) {
   ContactInternals& inner = internals_of(*contact);
-  FreeSpace space = {&inner, (params.disabled_optimizations & FDCG_STEP_OPT_CLEAR_BALL) == 0, kSweepWork, contact};
+  FreeSpace space = {&inner, (params.disabled_optimizations & FDCG_STEP_OPT_CLEAR_BALL) == 0, kSweepWork, kMissedWork, contact};
   const bool is_plain = walk.friction.terms == nullptr;
   const bool asks_face = !FDCG_WITH_FAST_FACES && walk.active.state == FDCG_FACE && is_plain;
   uint32_t flags = 0, hops = transitions;

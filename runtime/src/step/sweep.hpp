@@ -18,7 +18,9 @@ template <class Geometry>
 class Sweep : public FanSweep<Geometry> {
   using Real = typename Geometry::Real;
   using Fans = FanSweep<Geometry>;
-  using Fans::best_, Fans::from_, Fans::glance_at_node, Fans::graph_, Fans::to_, Fans::work_left_;
+
+ protected:
+  using Fans::best_, Fans::from_, Fans::glance_at_node, Fans::graph_, Fans::slab_, Fans::to_, Fans::way_, Fans::work_left_;
 
  public:
   using Fans::Fans;
@@ -39,6 +41,9 @@ class Sweep : public FanSweep<Geometry> {
     *first = best_;
   }
 
+  // Of a sweep that met nothing: which node it may have passed all the same, if any.
+  [[nodiscard]] const FirstHit<Real>& missed() const { return Fans::missed_; }
+
   // In index order from *next_leaf on (a leaf of the hierarchy, or a node where there is none), which moves on by at least one.
   // False: the work ran out.
   bool run_in_order(FirstHit<Real>* first, uint32_t* next_leaf) {
@@ -46,6 +51,35 @@ class Sweep : public FanSweep<Geometry> {
     const bool is_done = graph_.hierarchy() == nullptr ? try_all_nodes(next_leaf) : search_in_order(next_leaf);
     *first = best_;
     return is_done;
+  }
+
+ protected:
+  [[gnu::noinline]] uint32_t touch(const BoxTree& tree, int level, uint32_t record, float (&entry)[FDCG_TREE_WAYS]) const {
+    spend(work_left_, kBoxWork);
+    const fdcg_box8& boxes = graph_.hierarchy()[tree.first[level] + record];
+    const float limit = tree_fraction(best_.fraction);
+    const uint32_t touched = touched_boxes(boxes, in_tree_, limit, entry) & tree.lanes(level, record);
+    const bool has_tightened = graph_.has_tightened(level, record, touched);
+    graph_.bound_upkeep(work_left_);
+    return has_tightened ? touched & touched_boxes(boxes, in_tree_, limit, entry) : touched;
+  }
+
+  // Puts the way into tree units. A way from far away is cut to the part near the tree, lest floats lose it. False: it passes
+  // by.
+  [[gnu::noinline]] bool enter_tree() {
+    constexpr Real kNear = 16, kEpsilon = RealLimits<Real>::kEpsilon;
+    const Real per_unit = static_cast<Real>(1 / tree_unit(graph_.header()->extent));
+    const Vec3<Real> from = from_ * per_unit, to = to_ * per_unit;
+    const Real size = norm1(from) + norm1(to);
+    if (!(size > kNear)) {
+      tree_way(narrowed(from), narrowed(to - from), static_cast<float>(tree_rounding(size, size * kEpsilon)), &in_tree_);
+      return true;
+    }
+    double begin, end;
+    if (!cut_tree_way(widen(from), widen(to), &in_tree_, &begin, &end)) return false;
+    part_begin_ = static_cast<Real>(begin);
+    per_part_ = static_cast<Real>(1 / (end - begin));
+    return true;
   }
 
  private:
@@ -111,38 +145,10 @@ class Sweep : public FanSweep<Geometry> {
     return true;
   }
 
-  [[gnu::noinline]] uint32_t touch(const BoxTree& tree, int level, uint32_t record, float (&entry)[FDCG_TREE_WAYS]) const {
-    spend(work_left_, kBoxWork);
-    const fdcg_box8& boxes = graph_.hierarchy()[tree.first[level] + record];
-    const float limit = tree_fraction(best_.fraction);
-    const uint32_t touched = touched_boxes(boxes, in_tree_, limit, entry) & tree.lanes(level, record);
-    const bool has_tightened = graph_.has_tightened(level, record, touched);
-    graph_.bound_upkeep(work_left_);
-    return has_tightened ? touched & touched_boxes(boxes, in_tree_, limit, entry) : touched;
-  }
-
   // A fraction of the whole way as one of the part of it that is near the tree.
   [[nodiscard]] float tree_fraction(Real fraction) const {
     const Real part = (fraction - part_begin_) * per_part_;
     return part < 1 ? static_cast<float>(part) : 1.0F;
-  }
-
-  // Puts the way into tree units. A way from far away is cut to the part near the tree, lest floats lose it. False: it passes
-  // by.
-  [[gnu::noinline]] bool enter_tree() {
-    constexpr Real kNear = 16, kEpsilon = RealLimits<Real>::kEpsilon;
-    const Real per_unit = static_cast<Real>(1 / tree_unit(graph_.header()->extent));
-    const Vec3<Real> from = from_ * per_unit, to = to_ * per_unit;
-    const Real size = norm1(from) + norm1(to);
-    if (!(size > kNear)) {
-      tree_way(narrowed(from), narrowed(to - from), static_cast<float>(tree_rounding(size, size * kEpsilon)), &in_tree_);
-      return true;
-    }
-    double begin, end;
-    if (!cut_tree_way(widen(from), widen(to), &in_tree_, &begin, &end)) return false;
-    part_begin_ = static_cast<Real>(begin);
-    per_part_ = static_cast<Real>(1 / (end - begin));
-    return true;
   }
 
   static Vec3<float> narrowed(Vec3<Real> a) {
