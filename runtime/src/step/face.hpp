@@ -148,7 +148,7 @@ inline bool is_far(const GraphView<Geometry>& graph, Vec3<Real> hip) {
 template <class Geometry, class Real = typename Geometry::Real>
 [[gnu::noinline, gnu::cold]] void place_on_rim(Walk<Geometry>& walk, NodeRef<Geometry> node, uint32_t side,
                                                const Vec3<Real>& point) {
-  const Real in_line = on_plane_rounding(point, node.extent()) + Real(2 * walk.graph.max_deviation());
+  const Real in_line = on_plane_rounding(point, node.extent());
   const auto& plane = node.voronoi_plane(side);
   EdgeLine<Real> line(walk.graph, node, side);
   Real u = line.parameter(point);

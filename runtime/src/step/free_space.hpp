@@ -9,12 +9,11 @@
 
 namespace fdcg {
 
-// A way that meets a merged face may begin behind its plane, within its slab, or meet it before: friction would hold the
-// god-object there.
+// Where faces were merged a way that meets one may begin behind its plane, within its slab, or meet it before: friction would
+// hold the god-object there.
 template <class Geometry, class Real = typename Geometry::Real>
 inline Vec3<Real> onto_slab(const Walk<Geometry>& walk, Vec3<Real> point, uint32_t n) {
-  const NodeRef<Geometry> node = walk.graph.node(n);
-  return node.is_inexact() ? foot_on(node, point) : point;
+  return walk.graph.has_inexact_nodes() ? foot_on(walk.graph.node(n), point) : point;
 }
 
 // Places the contact at the first collision on the way, or at its end.

@@ -12,15 +12,15 @@
 namespace fdcg {
 
 // Moves the god-object along `outward` by as little as puts it in front of the node's plane: a slit may be narrower than a
-// rounding.
+// rounding, and a groove between merged faces not much wider than they are off their corners.
 template <class Geometry, class Real = typename Geometry::Real>
 [[gnu::noinline, gnu::cold]] void step_in_front_of(Walk<Geometry>& walk, NodeRef<Geometry> node, const Vec3<Real>& outward) {
-  constexpr int kMostMoves = 16;  // each twice the one before
+  constexpr int kMostMoves = 16;  // onto the plane; then the least step, and each twice the one before
   const Real bound = plane_rounding_bound(walk.graph, walk.god_object);
   const Real least = least_step_clear<Real>(walk.graph.header()->extent);
   const Real behind = absolute(distance_from(node, walk.god_object));
   Real step = behind > least ? behind : least;
-  for (int i = 0; i < kMostMoves; ++i, step = 2 * step) {
+  for (int i = 0; i < kMostMoves; ++i, step = i == 1 ? least : 2 * step) {
     if (side_of(walk.graph, node, walk.god_object, bound, &walk.work_left) >= 0) break;
     walk.god_object = walk.god_object + outward * step;
   }

@@ -87,7 +87,8 @@ class NodeEntry {
   // by ways that pass it by.
   [[nodiscard, gnu::noinline, gnu::cold]] Real part_over(uint32_t n, Real fraction, Real least) const {
     const NodeRef<Geometry> node = graph_.node(n);
-    const Real rounding = side_rounding(from_bound_, to_bound_), off = slab_ - from_bound_;  // corners off their planes
+    const Real rounding = side_rounding(from_bound_, to_bound_ * fraction);  // the end may be far away, and so coarse
+    const Real off = slab_ - from_bound_;                                    // corners off their planes
     Real begin = least, end = 1;
     if (!clip_to(node, rounding + off, &begin, &end)) return kNever;
     if (fraction > end) {  // come in after the way has left the node: where it surely is still over it
@@ -239,7 +240,6 @@ class NodeEntry {
       if (start_side >= -from_bound_ && !FDCG_MUTANT("seat")) try_other_wall(n, node);
       return false;
     }
-    if (start_side < 0 && left_lies_behind(node)) return false;
     const bool is_over = kTellsOver && lies == Lies::over && start_side >= 0;  // where it meets the plane, too
     const Real fall = start_side - end_side, rounded = start_side > 0 ? start_side / fall : Real(0);
     const Real noise = from_bound_ + to_bound_ + (is_slab ? slab_ : Real(0));
@@ -261,10 +261,11 @@ class NodeEntry {
   }
 
   // Of a node that the way does not enter, and ends behind: whether the two come so near to one another that the mesh of which
-  // it was merged may have been passed there. A way that ends so near to the plane is as well outside.
+  // it was merged may have been passed there. A way that ends no deeper than corners may lie is as well outside.
   [[gnu::noinline, gnu::cold]] void may_miss(uint32_t n, NodeRef<Geometry> node, Real start_side, Real end_side) {
     const Real reach = missed_reach(graph_.max_deviation(), from_bound_), fall = start_side - end_side;
-    if (best_.node != FDCG_NONE || start_side < -reach || end_side > -reach) return;
+    const Real deep = reach - Real(graph_.max_deviation());
+    if (best_.node != FDCG_NONE || start_side < -reach || end_side > -deep) return;
     Real begin = start_side > reach ? (start_side - reach) / fall : Real(0);
     Real end = start_side + reach < fall ? (start_side + reach) / fall : Real(1);
     if (!clip_to(node, reach, &begin, &end)) return;
@@ -366,21 +367,6 @@ class NodeEntry {
       if (side(face, to_, to_bound_) >= 0 && !reaches(face, node, 1, Real(0))) return false;
     }
     return true;
-  }
-  // Whether the face or edge that the way leaves lies behind an inexact node: then the way does not begin in front of it,
-  // though it may begin in its slab.
-  [[nodiscard, gnu::noinline, gnu::cold]] bool left_lies_behind(NodeRef<Geometry> node) const {
-    if (left_.state != FDCG_FACE && left_.state != FDCG_EDGE) return false;
-    const bool is_edge = left_.state == FDCG_EDGE;
-    const NodeRef<Geometry> face = is_edge ? node : graph_.node(left_.index);
-    const uint32_t count = is_edge ? 2 : face.side_count();
-    bool is_behind = false;
-    for (uint32_t k = 0; k < count; ++k) {
-      const Real side = side_of_corner(node, is_edge ? graph_.connection(left_.index).corner(k) : face.corner(k));
-      if (side > slab_) return false;
-      is_behind = is_behind || side < -slab_;
-    }
-    return is_behind;
   }
   // Whether a node reaches in front of a plane (`sign` 1) or behind it (-1) by more than `beyond`.
   [[nodiscard, gnu::noinline, gnu::cold]] bool reaches(NodeRef<Geometry> plane, NodeRef<Geometry> node, int sign,
