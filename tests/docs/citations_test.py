@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Citations resolve. In comments of code, and in docs/internals:
 
-  contact-model FACE-3, FACE-1 to FACE-7     a rule that docs/internals/contact-model.md declares: <a id="face-3"></a>**FACE-3**
+  contact-model FACE-3, FACE-1 to FACE-6     a rule that docs/internals/contact-model.md declares: <a id="face-3"></a>**FACE-3**
   Melder 2004, section 5c / figure 7         the paper; other works likewise: Ericson 2005, section 5.3.3
   docs/internals/sweep.md#boxes              a page of the repository, and a heading in it; any path from the root
   walk.hpp                                   a file of the repository, by its basename

@@ -180,7 +180,7 @@ class Walker:
     # ---- the tick
 
     def tick(self, hip):
-        self.hip, is_first, self.residual, self.transitions, self.rim = hip, self.hip is None, (0.0, 0.0, 0.0), 0, None
+        self.hip, is_first, self.transitions, self.rim = hip, self.hip is None, 0, None
         if is_first:  # contact-model TICK-3
             self.god_object = hip
         else:
@@ -195,15 +195,7 @@ class Walker:
             if self.at == NOWHERE:
                 return
             self.transitions += 1
-        nearest, visited, has_retried = self.gap2(), [self.at], False
-
-        def is_rest():  # contact-model TICK-6
-            nonlocal visited, has_retried
-            if has_retried or norm1(self.residual) == 0:
-                return True
-            self.residual, has_retried, visited = (0.0, 0.0, 0.0), True, [self.at]
-            return False
-
+        nearest, visited = self.gap2(), [self.at]
         while True:
             before = self.at
             after = (None, self.on_face, self.on_edge, self.on_vertex)[before[0]](before[1])
@@ -218,8 +210,8 @@ class Walker:
                     return
                 self.transitions += 1
             if self.gap2() < nearest:
-                nearest, visited, has_retried = self.gap2(), [], False
-            if not self.may_visit(self.at, visited) and is_rest() and not self.goes_on_at_corner(visited):
+                nearest, visited = self.gap2(), []
+            if not self.may_visit(self.at, visited) and not self.goes_on_at_corner(visited):
                 return
 
     @staticmethod
@@ -254,7 +246,7 @@ class Walker:
         return dot(gap, gap)
 
     def place(self, point, seat):
-        self.god_object, self.seat, self.residual = point, seat, (0.0, 0.0, 0.0)
+        self.god_object, self.seat = point, seat
 
     # ---- free space
 
@@ -348,11 +340,10 @@ class Walker:
         def in_plane(a):
             return minus(a, times(n, dot(n, a)))
 
-        stands = in_plane(minus(self.god_object, hip))
-        radius = self.slip(dot(stands, stands), depth)
+        q = in_plane(minus(self.god_object, hip))
+        radius = self.slip(dot(q, q), depth)
         if radius is None:  # contact-model FACE-3
             return None
-        q = in_plane(plus(minus(self.god_object, hip), self.residual))  # contact-model FACE-7
         target = plus(plus(hip, times(n, depth)), times(q, radius / norm(q) if radius > 0 and norm(q) > 0 else 0.0))  # contact-model FACE-4
         crossing = self.first_crossing(face, target)
         if crossing is None:
@@ -361,12 +352,18 @@ class Walker:
                 self.place(minus(target, times(n, off)), None)
             return None
         fraction, k = crossing
-        start = self.god_object
-        ahead = plus(self.residual, times(minus(minus(target, start), self.residual), fraction))
-        landed = self.place_on_rim(face, k, plus(start, ahead))
-        if landed[0] == EDGE:  # contact-model FACE-7
-            self.residual = plus(minus(start, self.god_object), ahead)
-        return landed
+        return self.cross_side(face, k, plus(self.god_object, times(minus(target, self.god_object), fraction)))
+
+    def cross_side(self, face, k, point):  # contact-model FACE-6
+        graph, plane = self.graph, self.graph.voronoi(face, k)
+        on = minus(minus(point, times(graph.normal[face], graph.distance(face, point))), times(plane[0], beyond(plane, point)))
+        tolerance = graph.edge[graph.side[face][k][0]].end_tolerance
+        others = (beyond(graph.voronoi(face, j), on) for j in range(3) if j != k)
+        if norm1(self.hip) > 16 * graph.extent or any(s >= -tolerance for s in others):
+            return self.place_on_rim(face, k, point)
+        self.rim = graph.side[face][k][0]
+        self.place(on, (EDGE, self.rim))
+        return self.seat
 
     def leave_face(self, face):  # contact-model FACE-1
         if self.seat is not None:

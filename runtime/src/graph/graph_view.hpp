@@ -231,13 +231,17 @@ struct GraphView : Geometry {
     return edge;
   }
 
+  // Prefetches what an edge is asked for, in a row.
+  FDCG_HOT void prefetch_edge(NodeRef<Geometry> here, uint32_t k) const {
+    __builtin_prefetch(&this->connections()[here.connection(k)]);
+    __builtin_prefetch(&this->corners()[here.corner(k)]);
+    if (this->has_edges()) __builtin_prefetch(&this->edges()[here.connection(k)]);
+  }
   // Prefetches what lies at and beyond side k: all that the step reads when the god-object crosses it. The addresses are in
   // this node's block, so that the cache misses of one crossing overlap. Inlined by force: GCC 12 treats a function that only
   // prefetches as one without effect, and drops its calls.
   FDCG_HOT void prefetch_crossing(NodeRef<Geometry> here, uint32_t k) const {
-    __builtin_prefetch(&this->connections()[here.connection(k)]);
-    __builtin_prefetch(&this->corners()[here.corner(k)]);
-    if (this->has_edges()) __builtin_prefetch(&this->edges()[here.connection(k)]);
+    prefetch_edge(here, k);
     if (here.across(k) == FDCG_NONE) return;
     const unsigned char* const block = node(here.across(k)).block();
     const uint32_t bytes = node_bytes<Real>(kPrefetchedSides, this->has_planes());
@@ -251,13 +255,10 @@ struct GraphView : Geometry {
   }
   // With stored planes and edges, as files are by default.
   [[nodiscard]] bool is_plain() const { return this->has_edges() && this->has_planes(); }
-  // The same of one side in a plain graph, without a branch: what lies across a border is node 0 here.
+  // Of one side in a plain graph what a crossing reads: the node beyond alone (face.hpp, goes_onto_side). Without a branch:
+  // what lies across a border is node 0 here.
   FDCG_HOT void prefetch_plainly(const fdcg_side& side) const {
     constexpr uint32_t kBytes = node_bytes<Real>(kPrefetchedSides, true);
-    const auto& point = this->corners()[side.corner].point;  // may lie across two lines
-    __builtin_prefetch(&point);
-    __builtin_prefetch(reinterpret_cast<const unsigned char*>(&point) + sizeof point - 1);
-    __builtin_prefetch(&this->edges()[side.link >> 1]);
     const unsigned char* const block = node(side.across == FDCG_NONE ? 0 : side.across).block();
 #pragma GCC unroll 8
     for (uint32_t at = 0; at < kBytes; at += kLineBytes)
@@ -265,6 +266,10 @@ struct GraphView : Geometry {
     __builtin_prefetch(block + kBytes - 1);
   }
 
+  // Whether many of its edges are concave, so that edges keep the god-object often.
+  [[nodiscard]] bool keeps_on_edges() const {
+    return this->header()->connection_type_count[FDCG_CONCAVE] > this->header()->connection_count / 8;
+  }
   // The same of all sides of a triangle in a plain graph. One of them is where the god-object came in, and at hand already; to
   // leave it out would be to wait until it is known which. Without the empty statement GCC 12 would drop the calls.
   [[gnu::noinline]] void prefetch_neighbours_of(uint32_t n) const {
@@ -272,6 +277,11 @@ struct GraphView : Geometry {
 #pragma GCC unroll 3
     for (uint32_t k = 0; k < kPrefetchedSides; ++k)
       prefetch_plainly(here.side(k));
+    if (keeps_on_edges()) {
+#pragma GCC unroll 3
+      for (uint32_t k = 0; k < kPrefetchedSides; ++k)
+        prefetch_edge(here, k);
+    }
     __asm__ volatile("");
   }
 

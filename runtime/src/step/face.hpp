@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The god-object on a face (contact-model FACE-1 to FACE-7; Melder 2004, sections 2, 5b and 5c).
+// The god-object on a face (contact-model FACE-1 to FACE-6; Melder 2004, sections 2, 5b and 5c).
 #pragma once
 
 #include "step/shaded_edge.hpp"
@@ -93,12 +93,11 @@ struct FaceGlance {
   Vec3<Real> target;
 };
 
-// `bound`: plane_rounding_bound of the HIP. `stands`: from the HIP to the god-object; `reach`: to where it would be without
-// rounding (contact-model FACE-7). Whether friction holds it is asked of its place: the next tick has no other.
+// `bound`: plane_rounding_bound of the HIP. `stands`: from the HIP to the god-object.
 // Cost: one plane; where the god-object slides, one for each side of the node. Changes nothing but friction.is_slipping.
 template <bool kIsPlain = false, class Geometry, class Laws, class Real = typename Geometry::Real>
 FDCG_HOT FaceGlance<Real> glance_on_face(NodeRef<Geometry> node, Laws& friction, Vec3<Real> hip, Real bound, Real side,
-                                         Vec3<Real> god_object, Vec3<Real> stands, Vec3<Real> reach) {
+                                         Vec3<Real> god_object, Vec3<Real> stands) {
   using Kind = FaceMoveKind;
   if (FDCG_MUTANT("leaves-late")) side = side - Real(1e-4) * node.extent();
   if (FDCG_MUTANT("leaves-early")) side = side + Real(1e-4) * node.extent();
@@ -106,15 +105,14 @@ FDCG_HOT FaceGlance<Real> glance_on_face(NodeRef<Geometry> node, Laws& friction,
   const Vec3<Real> normal = node.normal();
   const Vec3<Real> off = stands - normal * dot(normal, stands);  // its part in the plane: from the surface point
   const Real depth = -side;
-  const Slip<Real> slip = friction.slip(god_object, dot(off, off), depth);
+  const Real off2 = dot(off, off);
+  const Slip<Real> slip = friction.slip(god_object, off2, depth);
   if (slip.is_rest) return {Kind::rests, 0, god_object};
   Vec3<Real> way = normal * depth;                   // from the HIP to the target: so far to the surface point
   if (slip.gap > 0 || FDCG_MUTANT("slides-half")) {  // else it does not wait for where the god-object is
-    const Vec3<Real> offset = reach - normal * dot(normal, reach);
-    const Real reach2 = dot(offset, offset);
-    const Real shrink = slip.gap > 0 && reach2 > 0 ? slip.gap / root(reach2) : Real(0);
+    const Real shrink = slip.gap > 0 && off2 > 0 ? slip.gap / root(off2) : Real(0);
     const Real part = FDCG_MUTANT("slides-half") ? (1 + shrink) / 2 : FDCG_MUTANT("slides-past") ? -shrink : shrink;
-    way = way + offset * part;
+    way = way + off * part;
   }
   const Vec3<Real> target = hip + way;  // contact-model FRIC-4: rounded once
   const uint32_t k = FDCG_MUTANT("rim-unseen") ? node.side_count() : first_near_side<kIsPlain>(node, target, bound);
@@ -132,14 +130,37 @@ inline FaceMove<Real> meet_side(NodeRef<Geometry> node, const Vec3<Real>& from, 
 
 template <bool kIsPlain = false, class Geometry, class Laws, class Real = typename Geometry::Real>
 FDCG_HOT FaceMove<Real> move_on_face(NodeRef<Geometry> node, Laws& friction, Vec3<Real> hip, Real bound, Real side,
-                                     Vec3<Real> god_object, Vec3<Real> stands, Vec3<Real> reach) {
-  return meet_side(node, god_object, glance_on_face<kIsPlain>(node, friction, hip, bound, side, god_object, stands, reach));
+                                     Vec3<Real> god_object, Vec3<Real> stands) {
+  return meet_side(node, god_object, glance_on_face<kIsPlain>(node, friction, hip, bound, side, god_object, stands));
 }
 
 // A HIP so far away that its rounding, which is that of a slide's target too, may take the target off the plane.
 template <class Geometry, class Real = typename Geometry::Real>
 inline bool is_far(const GraphView<Geometry>& graph, Vec3<Real> hip) {
   return norm1(hip) > kNearExtents * Real(graph.header()->extent);
+}
+
+// Where a move that began at `from` meets the side that it crosses, but for rounding.
+template <class Real>
+FDCG_HOT Vec3<Real> where_it_crosses(const Vec3<Real>& from, const FaceMove<Real>& move) {
+  return from + (move.target - from) * move.crossing.fraction;
+}
+
+// contact-model FACE-6: puts the place where a move crosses a side onto that side, by the node's own planes: neither the edge
+// nor its corners are read, each of which may be a cache miss. False: it is not farther inside of the sides before and after
+// than an end of this one reaches, or planes do not tell.
+template <bool kIsPlain = false, class Geometry, class Real = typename Geometry::Real>
+FDCG_HOT bool goes_onto_side(const Vec3<Real>& hip, NodeRef<Geometry> node, uint32_t side, Vec3<Real>* place) {
+  if (node.is_inexact() || is_far(node.graph(), hip)) return false;
+  const uint32_t beside[2] = {node.previous(side), node.next(side)};
+  const auto& rim = kIsPlain ? node.stored_plane(side) : node.voronoi_plane(side);
+  const Vec3<Real> on = *place - node.normal() * node.plane().distance(*place) - rim.normal * rim.distance(*place);
+  for (const uint32_t k : beside) {
+    const Real beyond = (kIsPlain ? node.stored_plane(k) : node.voronoi_plane(k)).distance(on);
+    if (!(beyond < -end_rounding(node.extent()))) return false;
+  }
+  *place = on;
+  return true;
 }
 
 // contact-model FACE-6: seats the god-object on the rim at `point`, which the plane of this side holds. Sides in one line have
@@ -210,10 +231,14 @@ template <class Geometry, class Real = typename Geometry::Real>
   if (move.kind != Kind::crosses) return rest();
   const uint32_t side = FDCG_MUTANT("wrong-side") ? node.next(move.crossing.local_side) : move.crossing.local_side;
   if (node.side_count() > walk.graph.kPrefetchedSides) walk.graph.prefetch_crossing(node, side);  // else it has been
-  const Vec3<Real> from = walk.god_object, way = (move.target - from) - walk.rounding_residual;
-  const Vec3<Real> ahead = walk.rounding_residual + way * move.crossing.fraction;  // from `from` to the crossing
-  place_on_rim(walk, node, side, from + ahead);
-  if (walk.seat.state == FDCG_EDGE && !FDCG_MUTANT("lost")) walk.rounding_residual = (from - walk.god_object) + ahead;
+  Vec3<Real> place = where_it_crosses(walk.god_object, move);
+  if (goes_onto_side(walk.hip, node, side, &place)) {
+    walk.rim = node.connection(side);
+    walk.place(place, {FDCG_EDGE, walk.rim});
+  } else {
+    place_on_rim(walk, node, side, place);
+  }
+  if (FDCG_MUTANT("slip-flag-feature") && walk.seat.state == FDCG_EDGE) walk.friction.is_slipping = false;
   return go_to(walk.seat);
 }
 
@@ -234,9 +259,8 @@ template <class Geometry, class Real = typename Geometry::Real>
       }
     }
   }
-  const Vec3<Real> stands = walk.gap(), reach = stands + walk.rounding_residual;
-  return carry_out(
-      walk, move_on_face(node, walk.friction, walk.hip, walk.hip_bound, walk.side(node), walk.god_object, stands, reach));
+  return carry_out(walk,
+                   move_on_face(node, walk.friction, walk.hip, walk.hip_bound, walk.side(node), walk.god_object, walk.gap()));
 }
 
 }  // namespace fdcg

@@ -38,7 +38,6 @@ struct Hop {
   Real side;             // of the HIP, from the node
   Real gap2;             // squared distance from the HIP
   Vec3<Real> god_object;
-  Vec3<Real> rounding_residual;  // contact-model FACE-7
   QuickFriction<Real> friction;
   FaceMove<Real> move;  // on the node
 };
@@ -71,6 +70,17 @@ FDCG_HOT void prefetch_ahead(const GraphView<Geometry>& graph, NodeRef<Geometry>
   hop->prefetched = across;
 }
 
+// Puts the place where a move crosses a side onto the edge, as place_on_rim() does. False: at or past one of its ends.
+template <class Geometry, class Real = typename Geometry::Real>
+[[gnu::noinline, gnu::cold]] bool goes_onto_edge(const GraphView<Geometry>& graph, NodeRef<Geometry> node, uint32_t side,
+                                                 Vec3<Real>* place) {
+  const EdgeLine<Real> line(graph, node, side);
+  const Real u = line.parameter(*place);
+  if (!(u > line.end_tolerance && line.length - u > line.end_tolerance)) return false;
+  *place = line.start + line.direction * u;
+  return true;
+}
+
 // Goes over the side that the move on its face meets (contact-model FACE-6, EDGE-1), and stands before the face beyond. False:
 // not plainly so, and nothing has changed.
 template <class Geometry, class Real = typename Geometry::Real>
@@ -78,7 +88,6 @@ FDCG_HOT bool hop_over(const GraphView<Geometry>& graph, const Vec3<Real>& hip, 
   const NodeRef<Geometry> here = graph.node(hop->node);
   const uint32_t k = hop->move.crossing.local_side;
   const fdcg_side& crossed = here.side(k);
-  __builtin_prefetch(&graph.connections()[crossed.link >> 1]);  // for an edge that keeps it
   if (crossed.across == FDCG_NONE) return false;
   const NodeRef<Geometry> there = graph.node(crossed.across);
   if (crossed.across != hop->prefetched) graph.prefetch_neighbours_of(crossed.across);
@@ -89,20 +98,15 @@ FDCG_HOT bool hop_over(const GraphView<Geometry>& graph, const Vec3<Real>& hip, 
       (side < -bound && there.stored_plane(back).distance(hip) < 0 && here.stored_plane(k).distance(hip) >= 0) ||
       FDCG_MUTANT("hops-anywhere");
   if (!FDCG_WITH_FAST_EDGES && !goes_over) return false;
-  const Vec3<Real> from = hop->god_object, way = (hop->move.target - from) - hop->rounding_residual;
-  const Vec3<Real> ahead = hop->rounding_residual + way * hop->move.crossing.fraction;
-  const auto& edge = graph.edges()[crossed.link >> 1];
-  const Vec3<Real> start = graph.corner_point(here.corner_before(k + (crossed.link & 1)));
-  const Vec3<Real> direction = vec(edge.direction);
-  const Real u = dot((from + ahead) - start, direction), end_tolerance = end_rounding(here.extent());
-  if (!(u > end_tolerance && edge.length - u > end_tolerance)) return false;
-  const Vec3<Real> god_object = start + direction * u, gap = god_object - hip;
+  if (!goes_over) graph.prefetch_edge(here, k);
+  Vec3<Real> god_object = where_it_crosses(hop->god_object, hop->move);
+  if (!goes_onto_side<true>(hip, here, k, &god_object) && !goes_onto_edge(graph, here, k, &god_object)) return false;
+  const Vec3<Real> gap = god_object - hip;
   const Real gap2 = dot(gap, gap);
   if (!(gap2 < hop->gap2)) return false;
   if (!goes_over) return FDCG_WITH_FAST_EDGES && stops_on_edge(graph, hip, crossed.link >> 1, god_object, hop);
-  hop->god_object = by_parts(FDCG_MUTANT("hop-stays") ? from : god_object);
+  hop->god_object = by_parts(FDCG_MUTANT("hop-stays") ? hop->god_object : god_object);
   hop->gap2 = gap2;
-  hop->rounding_residual = FDCG_MUTANT("hop-residual-of-the-way") ? ahead : (from - god_object) + ahead;
   hop->node = FDCG_MUTANT("hop-keeps-face") ? hop->node : crossed.across;
   hop->edge = crossed.link >> 1;
   hop->transitions += 2;
@@ -123,8 +127,7 @@ template <class Geometry, class Real = typename Geometry::Real>
   for (;; has_move = false) {
     if (!has_move) {
       const Vec3<Real> gap = hop->god_object - hip;
-      hop->move = move_on_face<true>(graph.node(hop->node), hop->friction, hip, bound, hop->side, hop->god_object, gap,
-                                     gap + hop->rounding_residual);
+      hop->move = move_on_face<true>(graph.node(hop->node), hop->friction, hip, bound, hop->side, hop->god_object, gap);
     }
     if (hop->move.kind != Kind::crosses || hop->work_left <= kHopWork) return;
     if (!hop_over(graph, hip, bound, hop) || hop->is_on_edge) return;
@@ -147,7 +150,6 @@ template <class Geometry, class Real = typename Geometry::Real>
   hop.is_on_edge = false;
   hop.work_left = walk.work_left;
   hop.god_object = walk.god_object;
-  hop.rounding_residual = {0, 0, 0};
   hop.friction = {walk.friction};
   hop_to_hip(walk.graph, walk.hip, walk.hip_bound, false, &hop);
   walk.friction.is_slipping = hop.friction.is_slipping;
@@ -155,7 +157,6 @@ template <class Geometry, class Real = typename Geometry::Real>
   *transitions = hop.transitions;
   if (hop.transitions != 0) {
     walk.place(hop.god_object, {FDCG_EDGE, hop.edge});
-    walk.rounding_residual = hop.rounding_residual;
     walk.active = hop.is_on_edge ? walk.seat : Feature{FDCG_FACE, hop.node};
   }
   *move = hop.move;

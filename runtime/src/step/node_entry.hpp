@@ -251,6 +251,7 @@ class NodeEntry {
     if (!is_before_best(fraction, n)) return false;
     uint64_t met_exactly = 0;
     if (!is_over && !passes_inside(node, rounded, &met_exactly)) return false;
+    if (met_exactly != 0 && passes_edge(node, met_exactly)) return false;
     if (FDCG_MUTANT("distance-tolerance") && left_.state != FDCG_FREE && fraction < Real(1e-4)) return false;
     best_.fraction = fraction;
     best_.node = n;
@@ -258,6 +259,15 @@ class NodeEntry {
     is_over_.set(is_over);
     if (met_exactly && !FDCG_MUTANT("exact-feature")) best_.feature = on_rim(node, met_exactly, point_at(fraction));
     return true;
+  }
+
+  // Whether the way touches one edge of a node and goes on in front of the node beyond. The edge would let go: but its place on
+  // the edge is rounded, and the way from there is another one.
+  [[nodiscard, gnu::noinline, gnu::cold]] bool passes_edge(NodeRef<Geometry> node, uint64_t met_exactly) const {
+    const bool is_one = (met_exactly & (met_exactly - 1)) == 0 && met_exactly >> kLastBit == 0;
+    const uint32_t k = static_cast<uint32_t>(__builtin_ctzll(met_exactly)), across = node.across(k);
+    return is_one && across != FDCG_NONE && !graph_.has_inexact_nodes() &&
+           graph_.connection(node.connection(k)).type() != FDCG_CONCAVE && side(graph_.node(across), to_, to_bound_) >= 0;
   }
 
   // Of a node that the way does not enter, and ends behind: whether the two come so near to one another that the mesh of which

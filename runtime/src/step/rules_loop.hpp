@@ -63,14 +63,13 @@ class Trail {
   void add(Feature edge) { visited_[count_++] = key(edge); }
 
   // Called where the step would rest (contact-model TICK-6). A rest must hold in the next tick, which knows nothing of the
-  // features visited here, nor of Walk::rounding_residual, which is not kept between ticks: so the step continues as that tick
-  // would, unless it already did so from here; a few times for each time that the god-object came nearer.
+  // features visited here: so the step continues as that tick would, unless it already did so from here; a few times for each
+  // time that the god-object came nearer.
   bool begins_again(Walk<Geometry>& walk) {
     constexpr int kMostRounds = 4;
-    if (rounds_ == kMostRounds || norm1(walk.god_object - begun_from_) + norm1(walk.rounding_residual) == 0) return false;
+    if (rounds_ == kMostRounds || norm1(walk.god_object - begun_from_) == 0) return false;
     ++rounds_;
     begun_from_ = walk.god_object;
-    walk.rounding_residual = {0, 0, 0};
     was_let_go_ = false;
     visited_[0] = key(walk.active);
     count_ = 1;
@@ -169,6 +168,7 @@ Progress move_god_object(Walk<Geometry>& walk, Feature start, Vec3<Real> start_g
   Progress progress = {0, 0};
   Trail<Geometry> trail(start, start_gap);
   if (!hopped.is_free()) trail.add(hopped);
+  bool is_first_let_go = true;  // of this tick
   while (true) {
     const Feature at = walk.active;
     const Decision decision = decided != nullptr ? *decided : apply_rule(walk);
@@ -179,11 +179,12 @@ Progress move_god_object(Walk<Geometry>& walk, Feature start, Vec3<Real> start_g
     if (FDCG_MUTANT("walk-cut") && progress.transitions > 3) return progress;
     if (walk.active.state == FDCG_FACE) walk.graph.prefetch_around(walk.graph.node(walk.active.index));
     if (walk.active.is_free()) {
+      const bool can_wait = FDCG_WITH_BUSY_CORNERS && walk.work_left < kRuleWork / 2 &&
+                            ((is_first_let_go && !(at == start)) || is_shorter(walk.gap(), gap_begun(walk, *space)));
+      is_first_let_go = false;
       trail.let_go();
       const Vec3<Real> stood = walk.god_object;
       const Feature seat = walk.seat;
-      const bool can_wait =
-          FDCG_WITH_BUSY_CORNERS && walk.work_left < kRuleWork / 2 && is_shorter(walk.gap(), gap_begun(walk, *space));
       step_clear_of(walk, at);
       progress.flags |= sweep_to_hip(walk, at, stood, space);
       if (can_wait && progress.flags != 0) {  // contact-model BOUND-2: the next tick has more work for this sweep

@@ -266,7 +266,7 @@ FDCG_HOT FaceTick<Real> look_at_face(const GraphView<Geometry>& graph, const fdc
   const Vec3<Real> god_object = narrow<Real>(contact.god_object), stands = god_object - hip;
   const Real side = side_of(graph, node, hip, bound, nullptr);
   QuickFriction<Real> friction = {friction_of<Real>(params, contact)};
-  const FaceGlance<Real> glance = glance_on_face(node, friction, hip, bound, side, god_object, stands, stands);
+  const FaceGlance<Real> glance = glance_on_face(node, friction, hip, bound, side, god_object, stands);
   return {side, friction.is_slipping, {glance.kind, glance.near_side, by_parts(glance.target)}};
 }
 
@@ -335,7 +335,6 @@ FDCG_OUTLINED void step_on(const fdcg_graph& raw, const fdcg_params& params, con
   bool has_move = contact->state == FDCG_FACE;
   Hop<Real> hop;
   hop.god_object = narrow<Real>(contact->god_object);
-  hop.rounding_residual = {0, 0, 0};
   hop.work_left = kRuleWork;
   hop.transitions = 0;
   hop.is_on_edge = false;
@@ -348,8 +347,8 @@ FDCG_OUTLINED void step_on(const fdcg_graph& raw, const fdcg_params& params, con
       hop.move = meet_side(node, hop.god_object, tick->glance);
     } else {
       const Vec3<Real> stands = hop.god_object - hip;
-      hop.move = move_on_face(node, hop.friction, hip, bound, side_of(graph, node, hip, bound, nullptr), hop.god_object, stands,
-                              stands);
+      hop.move =
+          move_on_face(node, hop.friction, hip, bound, side_of(graph, node, hip, bound, nullptr), hop.god_object, stands);
     }
     hop.node = contact->feature;
     if (kHasHops<Geometry> && hop.move.kind == FaceMoveKind::crosses && tick->side < -bound &&
@@ -376,7 +375,6 @@ FDCG_OUTLINED void step_on(const fdcg_graph& raw, const fdcg_params& params, con
   }
   Walk<Geometry> walk(graph, hop.friction, nullptr, hip, bound, hop.god_object, {contact->state, contact->feature},
                       hop.transitions != 0 ? Feature{FDCG_EDGE, hop.edge} : seat_of(*contact), hop.work_left);
-  walk.rounding_residual = by_parts(hop.rounding_residual);
   walk_to_hip<Geometry, Real>(walk, has_move ? &hop.move : nullptr, hop.transitions, params, contact, result);
 }
 

@@ -75,8 +75,7 @@ FDCG_HOT bool rests_while_shaded(const FaceFrame& frame, const NormalField& fiel
 template <class Geometry, class Real = typename Geometry::Real>
 [[gnu::noinline, gnu::cold]] FaceMove<Real> move_on_facet(Walk<Geometry>& walk, NodeRef<Geometry> node, Real side) {
   const Vec3<Real> stands = walk.god_object - walk.hip;
-  return move_on_face(node, walk.friction, walk.hip, walk.hip_bound, side, walk.god_object, stands,
-                      stands + walk.rounding_residual);
+  return move_on_face(node, walk.friction, walk.hip, walk.hip_bound, side, walk.god_object, stands);
 }
 
 // The same about the interpolated normal.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The state of one contact within one step, and the moves that the rules share. face.hpp, edge.hpp, corner.hpp hold the rules
-// contact-model FACE-1 to FACE-7, EDGE-1 to EDGE-7, CORNER-1 to CORNER-7, free_space.hpp and sweep.hpp those of free space;
+// contact-model FACE-1 to FACE-6, EDGE-1 to EDGE-7, CORNER-1 to CORNER-7, free_space.hpp and sweep.hpp those of free space;
 // rules_loop.hpp drives them.
 #pragma once
 
@@ -48,12 +48,8 @@ struct Walk {
   Real hip_bound;  // plane_rounding_bound of hip
   Vec3<Real> god_object;
   Feature active;
-  Feature seat;        // the edge or vertex on which the god-object was last placed and still is; kFree: none
-  uint32_t work_left;  // for the rules, see work.hpp
-  // contact-model FACE-7: the rounding error of placing the god-object on the edge by which it crossed into the active face.
-  // The way continues from god_object + rounding_residual; otherwise a tick across hundreds of needle faces would accumulate
-  // these errors.
-  Vec3<Real> rounding_residual = {0, 0, 0};
+  Feature seat;              // the edge or vertex on which the god-object was last placed and still is; kFree: none
+  uint32_t work_left;        // for the rules, see work.hpp
   uint32_t rim = FDCG_NONE;  // the connection on which the god-object was last placed in this step
 
   [[nodiscard, gnu::noinline, gnu::hot]] Real side(NodeRef<Geometry> node) {
@@ -67,7 +63,6 @@ struct Walk {
   void place(Vec3<Real> point, Feature new_seat) {
     god_object = point;
     seat = new_seat;
-    rounding_residual = {0, 0, 0};
   }
 };
 
@@ -143,7 +138,6 @@ template <class Geometry, class Real = typename Geometry::Real>
     point = walk.graph.corner_point(on.index);
     break;
   }
-  if (FDCG_MUTANT("slip-flag-feature") && on.state == FDCG_EDGE) walk.friction.is_slipping = false;
   walk.place(point, on);
 }
 

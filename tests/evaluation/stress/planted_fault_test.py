@@ -22,7 +22,7 @@ FOUND = pathlib.Path(__file__).parent / "found"
 REPLAYED = [
     ("along-side", "a way that ends on a side's plane crosses it where it ends", "leaves_a_face_narrower_than_a_rounding.obj"),
     ("circle-at-corner", "a circle about a corner goes on there", "along_the_plane_of_a_pits_wall.obj"),
-    ("ends-on-plane", "a target on a side's plane but for rounding is on the side", "ends_on_a_side_of_a_flat_body.obj"),
+    ("ends-on-plane", "a target on a side's plane but for rounding is on the side", "onto_the_rim_of_a_plate_and_on.obj"),
 ]
 
 

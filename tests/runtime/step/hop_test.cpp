@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <vector>
 
 #include "catch.hpp"
 #include "contact_rig.hpp"
@@ -120,6 +121,33 @@ TEST_CASE("contacts are the same bit for bit with and without hops over edges") 
   CHECK(tally.off_edge > 1000);
   CHECK(tally.landing > 200);
   CHECK(tally.cut_short > 500);  // where the work of a tick runs out after hops
+}
+
+// Each record that a crossing reads may be a cache miss: it reads faces alone, but at an end of the side that it crosses.
+TEST_CASE("a slide over a convex body reads neither edges nor corners, but where it passes a corner") {
+  const PolygonSoup soup = ico_sphere(4);
+  const CompiledMesh mesh(soup, CompileOptions{});
+  fdcg_graph graph = mesh.view();
+  const std::vector<double> no_numbers(std::size_t{8} * (graph.header->connection_count + graph.header->corner_count),
+                                       std::nan(""));
+  graph.edges = graph.corners = no_numbers.data();
+  Contact own(mesh.view(), contact_params(0.3, 0.2)), blind(graph, contact_params(0.3, 0.2));
+  const double size = extent(soup);
+  own.step(0, 0, 1.2 * size);
+  long crossings = 0, at_corners = 0;
+  for (int i = 0; i < 20'000; ++i) {
+    const double turn = 0.01 * i, away = 0.7 * std::sin(0.0137 * i) * size;
+    const Hip hip = {away * std::cos(turn), away * std::sin(turn), 0.6 * size};
+    blind.state = own.state;
+    const bool was_on_face = own.state.state == FDCG_FACE;
+    own.step(hip);
+    if (!was_on_face || own.result.state != FDCG_FACE || own.result.transitions == 0) continue;
+    blind.step(hip);
+    ++(std::memcmp(&own.result, &blind.result, sizeof own.result) == 0 ? crossings : at_corners);
+  }
+  INFO(crossings << " ticks with crossings, " << at_corners << " past corners");
+  CHECK(crossings > 1000);
+  CHECK(at_corners * 100 < crossings);
 }
 
 TEST_CASE("ticks that slide on a face prefetch around it and beyond its neighbours, once, in a graph that says it is large") {

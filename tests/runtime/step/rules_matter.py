@@ -28,7 +28,6 @@ MUTANTS = [
     ("ends-on-plane", "ends-on-plane", "a target on a side's plane up to rounding is on the side"),
     ("first-crossing", "last-crossing", "the first crossing, not the last"),
     ("along-side", "along-side", "a way along a side ends where it ends"),
-    ("lost", "lost", "what rounding takes at an edge is not lost"),
     ("on-plane", "on-plane", "on a face's plane is outside"),
     ("seat", "seat", "the seat's rule decides, and where it is not asked the other wall holds"),
     ("last-tick-segment", "last-tick-segment", "the sweep starts where the HIP was"),
