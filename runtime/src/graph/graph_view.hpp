@@ -231,7 +231,7 @@ struct GraphView : Geometry {
     return edge;
   }
 
-  // Prefetches what an edge is asked for, in a row.
+  // Prefetches the records of side k's edge: connection, direction and a corner.
   FDCG_HOT void prefetch_edge(NodeRef<Geometry> here, uint32_t k) const {
     __builtin_prefetch(&this->connections()[here.connection(k)]);
     __builtin_prefetch(&this->corners()[here.corner(k)]);
