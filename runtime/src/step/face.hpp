@@ -147,8 +147,8 @@ FDCG_HOT Vec3<Real> where_it_crosses(const Vec3<Real>& from, const FaceMove<Real
 }
 
 // contact-model FACE-6: puts the place where a move crosses a side onto that side, by the node's own planes: neither the edge
-// nor its corners are read, each of which may be a cache miss. False: it may be at an end of the side, since it is not inside of
-// the sides before and after by more than end_rounding; or the face's corners lie off its plane; or the HIP is far away.
+// nor its corners are read, each of which may be a cache miss. False: it may be at an end of the side, since it is not inside
+// of the sides before and after by more than end_rounding; or the face's corners lie off its plane; or the HIP is far away.
 template <bool kIsPlain = false, class Geometry, class Real = typename Geometry::Real>
 FDCG_HOT bool goes_onto_side(const Vec3<Real>& hip, NodeRef<Geometry> node, uint32_t side, Vec3<Real>* place) {
   if (node.is_inexact() || is_far(node.graph(), hip)) return false;
