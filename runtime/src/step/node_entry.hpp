@@ -267,7 +267,7 @@ class NodeEntry {
     const bool is_one = (met_exactly & (met_exactly - 1)) == 0 && met_exactly >> kLastBit == 0;
     const uint32_t k = static_cast<uint32_t>(__builtin_ctzll(met_exactly)), across = node.across(k);
     return is_one && across != FDCG_NONE && !graph_.has_inexact_nodes() &&
-           graph_.connection(node.connection(k)).type() != FDCG_CONCAVE && side(graph_.node(across), to_, to_bound_) >= 0;
+           graph_.connection(node.connection(k)).type() != FDCG_CONCAVE && side(graph_.node(across), to_, to_bound_) > 0;
   }
 
   // Of a node that the way does not enter, and ends behind: whether the two come so near to one another that the mesh of which
