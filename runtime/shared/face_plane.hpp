@@ -164,19 +164,21 @@ FDCG_HOT Plane<Real> plane_with_normal(Vec3<double> unit, Vec3<double> a, Vec3<d
   return {normal, static_cast<Real>(offset_through<Real>(stored, a, 0.5 * (lowest + highest)))};
 }
 
-// The angle between two unit vectors, 0 .. pi, within 4e-8 (Abramowitz and Stegun 4.4.46): a weight for a corner's normal,
-// of which only the side counts. By additions, products and square root alone, so that every compiler and C library gives the
-// same bits.
+// The angle between two unit vectors, 0 .. pi, within 4e-8 of itself or of what it lacks to pi (Abramowitz and Stegun 4.4.46;
+// from the chord, of which a small angle is as good as the vectors): a weight for a corner's normal, of which only the side
+// counts. By additions, products and square root alone, so that every compiler and C library gives the same bits.
 inline double angle_of(Vec3<double> a, Vec3<double> b) {
   constexpr double kPi = 3.14159265358979323846;
   constexpr double kSeries[8] = {-0.0012624911, 0.0066700901, -0.0170881256, 0.0308918810,
                                  -0.0501743046, 0.0889789874, -0.2145988016, 1.5707963050};
-  const double cosine = dot(a, b), c = lesser_of(absolute(cosine), 1.0);
+  const bool is_blunt = dot(a, b) < 0;
+  const Vec3<double> chord = is_blunt ? a + b : a - b;
+  const double less = lesser_of(dot(chord, chord) / 2, 1.0), cosine = 1 - less;
   double sum = 0;
   for (const double coefficient : kSeries)
-    sum = coefficient + c * sum;
-  const double angle = root(1 - c) * sum;
-  return cosine < 0 ? kPi - angle : angle;
+    sum = coefficient + cosine * sum;
+  const double angle = root(less) * sum;
+  return is_blunt ? kPi - angle : angle;
 }
 
 }  // namespace fdcg

@@ -50,9 +50,9 @@ struct Plane {
   return 2 * off * off <= squared_length(step);
 }
 
-// The angle between two unit vectors, 0 .. pi, within 4e-8 (Abramowitz and Stegun 4.4.46): a weight for a corner's normal,
-// of which only the direction matters. Uses additions, products and square roots only, so that every compiler and C library
-// gives the same bits.
+// The angle between two unit vectors, 0 .. pi, within 4e-8 of itself (Abramowitz and Stegun 4.4.46): a weight for a corner's
+// normal, of which only the direction matters. Uses additions, products and square roots only, so that every compiler and C
+// library gives the same bits.
 [[nodiscard]] double angle_between(const Vec3& a, const Vec3& b);
 
 }  // namespace fdcg::bake

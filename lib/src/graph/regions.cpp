@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <span>
 
@@ -55,6 +56,31 @@ Atoms find_atoms(const Mesh& mesh, const Topology& topology, const std::vector<E
   return atoms;
 }
 
+// Of a solid, twice its volume for its surface: a plate's thickness, two thirds of a ball's radius. Infinite for a surface that
+// is open or inside out.
+double thickness(const Mesh& mesh, const Topology& topology) {
+  double six_volumes = 0, two_areas = 0;
+  for (std::uint32_t f = 0; f < mesh.face_count(); ++f) {
+    const Vec3 &a = mesh.points[+mesh.corners[3 * f]], &b = mesh.points[+mesh.corners[3 * f + 1]],
+               &c = mesh.points[+mesh.corners[3 * f + 2]];
+    six_volumes += dot(a, cross(b, c));
+    two_areas += length(cross(b - a, c - a));
+  }
+  const bool is_open = std::find(topology.twin.begin(), topology.twin.end(), Topology::kBoundary) != topology.twin.end();
+  return is_open || !(six_volumes > 0) ? std::numeric_limits<double>::infinity() : 2.0 / 3 * six_volumes / two_areas;
+}
+
+// How far corners may be off their faces' planes. The step takes a face for a slab, so much and the rounding of a distance deep
+// (contact-model GRAPH-4, FREE-3), and of a solid that is not much thicker its two sides would be one.
+double most_deviation(const Mesh& mesh, const Topology& topology, Precision precision) {
+  constexpr double kMostShare = 1.0 / 64;  // of the thickness
+  constexpr double kRoundings = 24;        // of a distance, in units of the extent's last place
+  double extent = 0;
+  for (const Vec3& p : mesh.points)
+    extent = std::max(extent, largest_component(p));
+  return kMostShare * thickness(mesh, topology) - kRoundings * (precision == Precision::f32 ? 0x1p-23 : 0x1p-52) * extent;
+}
+
 class Grower {
  public:
   // `is_tip`, of each vertex: faces there stay in their atoms. Empty: there is none.
@@ -70,6 +96,8 @@ class Grower {
 
   Regions run() {
     if (atoms_.count() == 0) return {};
+    if (options_.coplanar.kind == Coplanar::Kind::quantum)
+      most_deviation_ = most_deviation(mesh_, topology_, options_.precision);
     measure_atoms();
     std::vector<std::uint32_t> order(atoms_.count());
     for (std::uint32_t i = 0; i < order.size(); ++i)
@@ -238,9 +266,10 @@ class Grower {
 
   void finish(const Candidate& plane) {
     const Vec3 stored_normal = stored_plane(plane.normal, {&plane.point, 1}, options_.precision).normal;
+    const bool is_coarse = members_.size() > 1 && largest_deviation(plane) > most_deviation_;
     std::vector<std::uint32_t> left_out;
     std::erase_if(members_, [&](std::uint32_t atom) {
-      const bool leaves = members_.size() > 1 && !faces(atom, stored_normal);
+      const bool leaves = members_.size() > 1 && (is_coarse || !faces(atom, stored_normal));
       if (leaves) left_out.push_back(atom);
       return leaves;
     });
@@ -250,6 +279,19 @@ class Grower {
       const std::uint32_t face = largest_face_[atom];
       add_region({unit_normal(corner(face, 0), corner(face, 1), corner(face, 2)), corner(face, 0)});
     }
+  }
+
+  [[nodiscard]] double largest_deviation(const Candidate& plane) {
+    points_.clear();
+    for (const std::uint32_t atom : members_) {
+      for (const std::uint32_t face : atoms_.of(atom))
+        points_.insert(points_.end(), {corner(face, 0), corner(face, 1), corner(face, 2)});
+    }
+    const Plane stored = stored_plane(plane.normal, points_, options_.precision);
+    double largest = 0;
+    for (const Vec3& p : points_)
+      largest = std::max(largest, std::fabs(dot(stored.normal, p) + stored.offset));
+    return largest;
   }
 
   void add_region(const Candidate& plane) {
@@ -278,6 +320,7 @@ class Grower {
   const RegionOptions& options_;
   const std::vector<bool>& is_tip_;
   double cos_angle_;
+  double most_deviation_ = std::numeric_limits<double>::infinity();
   Atoms atoms_;
   std::vector<double> area_;
   std::vector<std::uint32_t> largest_face_;

@@ -9,6 +9,7 @@
 #include "catch.hpp"
 #include "graph/triangulate.hpp"
 #include "meshes.hpp"
+#include "random.hpp"
 #include "topology/topology.hpp"
 #include "topology/weld.hpp"
 
@@ -165,4 +166,20 @@ TEST_CASE("by the quantum no faces are joined where more than 32 planes meet in 
   }
   CHECK(at_tip == 5000);
   CHECK(joined == 0);
+}
+
+// Beside the slab of a face so far off its corners the two sides of a thin solid would be one.
+TEST_CASE("by the quantum no faces are joined whose corners would lie off by a share of the solid's thickness") {
+  for (const double thickness : {1.0, 0.01}) {
+    PolygonSoup plate = triangulated(thin_plate(thickness, 4));
+    Random random(1);
+    for (Vec3& p : plate.points)
+      p.z += random.uniform(-1e-3, 1e-3);
+    plate.absolute_quantum = 1e-3;
+    const Found found = regions_of(plate);
+    const bool is_joined = std::any_of(found.regions.list.begin(), found.regions.list.end(),
+                                       [](const Region& region) { return region.tier == Flat::quantum; });
+    CAPTURE(thickness);
+    CHECK(is_joined == (thickness == 1.0));
+  }
 }

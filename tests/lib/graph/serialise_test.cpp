@@ -22,6 +22,19 @@ std::vector<fdcg_section> table_of(const std::vector<std::byte>& bytes) {
   return table;
 }
 
+// Of the corner at a point; zero where there is none.
+Vec3 normal_at(const PolygonSoup& soup, const Vec3& point, Precision precision = Precision::f64) {
+  CompileOptions options;
+  options.merge = false;
+  options.precision = precision;
+  const WalkedGraph graph = compile_sound(soup, options);
+  for (const WalkedCorner& c : graph.corners) {
+    if (c.point[0] == point.x && c.point[1] == point.y && c.point[2] == point.z)
+      return Vec3{c.normal[0], c.normal[1], c.normal[2]};
+  }
+  return Vec3{};
+}
+
 }  // namespace
 
 TEST_CASE("sections are aligned, ascending, adjacent, padded with zeros and sealed") {
@@ -75,20 +88,19 @@ TEST_CASE("a float file equals the double file to float precision") {
 }
 
 TEST_CASE("corner normals weigh faces by angle and do not depend on the triangulation") {
-  const auto normal_at = [](const PolygonSoup& soup, double x, double y, double z) {
-    CompileOptions options;
-    options.merge = false;
-    const WalkedGraph graph = compile_sound(soup, options);
-    for (const WalkedCorner& c : graph.corners) {
-      if (c.point[0] == x && c.point[1] == y && c.point[2] == z) return Vec3{c.normal[0], c.normal[1], c.normal[2]};
-    }
-    return Vec3{};
-  };
   for (std::uint64_t seed = 0; seed < 8; ++seed) {
-    const Vec3 n = normal_at(triangulated(cube(), seed), 0.5, 0.5, 0.5);
+    const Vec3 n = normal_at(triangulated(cube(), seed), {0.5, 0.5, 0.5});
     for (const double component : {n.x, n.y, n.z})
       CHECK(component == Approx(1 / std::sqrt(3.0)).margin(1e-4));
   }
+}
+
+// Between the sides of a long funnel the weights are small angles, and their sum points along it.
+TEST_CASE("the corner normal of a long funnel points out of it") {
+  PolygonSoup funnel = triangulated(cone_pit(6));
+  for (Vec3& p : funnel.points)
+    p.z *= 1024;
+  CHECK(normal_at(funnel, {0, 0, 0}, Precision::f32).z > 0.999);
 }
 
 TEST_CASE("corners of many faces have a fan tree") {
