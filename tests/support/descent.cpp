@@ -132,7 +132,12 @@ bool is_near(const Long& foot, const Long& place, double so_near) {
   return dot(apart, apart) <= static_cast<long double>(so_near) * so_near;
 }
 
-// All from the corner.
+// Whether a place is no farther in a direction of any length than that.
+bool is_within(const Long& place, const Long& direction, long double so_near) {
+  return dot(place, direction) <= so_near * std::sqrt(dot(direction, direction));
+}
+
+// All from the corner. A foot so near to where the face ends is on it.
 bool rests_on_face(const LongWing& face, const Long& place, double so_near, const Long& t) {
   const Long& n = face.normal;
   const long double height = dot(n, t) / dot(n, n);
@@ -140,20 +145,26 @@ bool rests_on_face(const LongWing& face, const Long& place, double so_near, cons
   const Long foot = {t[0] - n[0] * height, t[1] - n[1] * height, t[2] - n[2] * height};
   const Long across = {face.right[0] - face.left[0], face.right[1] - face.left[1], face.right[2] - face.left[2]};
   const Long from_left = {foot[0] - face.left[0], foot[1] - face.left[1], foot[2] - face.left[2]};
-  const bool is_over =
-      dot(cross(n, face.left), foot) >= 0 && dot(cross(face.right, n), foot) >= 0 && dot(cross(n, across), from_left) >= 0;
+  const bool is_over = is_within(foot, cross(face.left, n), so_near) && is_within(foot, cross(n, face.right), so_near) &&
+                       is_within(from_left, cross(across, n), so_near);
   return is_over && is_near(foot, place, so_near);
 }
 
-// On the edge between two faces: to the left of `a` and to the right of `b`.
+// On the edge between two faces: to the left of `a` and to the right of `b`. A foot so near to an end is on it; and a HIP is
+// not over a face that would not be below it, were its third corner so far off its plane.
 bool rests_on_edge(const LongWing& a, const LongWing& b, const Long& place, double so_near, const Long& t) {
   const Long& edge = a.left;
-  const long double share = dot(t, edge) / dot(edge, edge);
-  if (!(share >= 0 && share <= 1)) return false;
+  const long double share = dot(t, edge) / dot(edge, edge), slack = so_near / std::sqrt(dot(edge, edge));
+  if (!(share >= -slack && share <= 1 + slack)) return false;
   const bool is_behind_a = dot(a.normal, t) < 0, is_behind_b = dot(b.normal, t) < 0;
   const bool is_groove = dot(a.normal, b.left) > 0;
   if (is_groove ? !is_behind_a && !is_behind_b : !is_behind_a || !is_behind_b) return false;
-  if ((is_behind_a && dot(cross(a.normal, edge), t) > 0) || (is_behind_b && dot(cross(edge, b.normal), t) > 0)) return false;
+  const long double deep = std::sqrt(dot(t, t) * dot(edge, edge));
+  const auto is_beside = [&](const LongWing& face, const Long& across) {
+    return is_within(t, across, so_near * (1 + deep / std::sqrt(dot(face.normal, face.normal))));
+  };
+  if (is_behind_a && !is_beside(a, cross(a.normal, edge))) return false;
+  if (is_behind_b && !is_beside(b, cross(edge, b.normal))) return false;
   return is_near({edge[0] * share, edge[1] * share, edge[2] * share}, place, so_near);
 }
 

@@ -27,7 +27,7 @@ class Descent {
   [[nodiscard]] bool begins_outside(const Hip& corner, const Hip& hip) const;
 
   // Whether a god-object so near to `place` may rest on an edge or a face at `corner`: at the foot of the HIP, from where no
-  // way that does not enter the solid leads nearer. In long double.
+  // way that does not enter the solid leads nearer, were the HIP moved by no more than that. In long double.
   [[nodiscard]] bool rests_beside(const Hip& corner, const Hip& place, double so_near, const Hip& hip) const;
 
  private:

@@ -88,6 +88,7 @@ class Certificate {
   [[nodiscard]] bool is_behind_corner(std::uint32_t v, const Point& t) const;
   [[nodiscard]] bool climbs_into(const Face& face, std::uint32_t corner, const Point& t) const;
   [[nodiscard]] Point foot(CertifiedFeature feature, const Point& hip) const;
+  [[nodiscard]] std::array<double, 3> moved_below(const fdcg_contact& contact, const std::array<double, 3>& hip) const;
   [[nodiscard]] std::array<double, 3> moved_over(const Face& face, const std::array<double, 3>& hip, double by) const;
   [[nodiscard]] std::vector<CertifiedFeature> around(CertifiedFeature feature) const;
   [[nodiscard]] double rim_ulps(CertifiedFeature feature, const Point& minimum, const Point& god_object) const;

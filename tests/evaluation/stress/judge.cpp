@@ -214,10 +214,11 @@ double Judge::in_front_of_edge(const EdgeShape& edge, const Hip& x) const {
 // At a groove's end the groove holds, by its friction too, whatever the corner's normal says: it points away from all faces
 // together.
 double Judge::in_front_of_corner(std::uint32_t corner, const Hip& x, double rounding) const {
-  const Hip from_corner = difference(x, specimen_.corners[corner].point);
-  if (specimen_.descent != nullptr && is_exact_)
-    return specimen_.descent->begins_outside(specimen_.corners[corner].point, x) ? norm(from_corner) : 0;
-  double front = dot(from_corner, specimen_.corners[corner].normal);
+  const CornerShape& shape = specimen_.corners[corner];
+  const Hip from_corner = difference(x, shape.point);
+  if (is_exact_ && !shape.is_open && !shape.is_shared)
+    return specimen_.descent->begins_outside(shape.point, x) ? norm(from_corner) : 0;
+  double front = dot(from_corner, shape.normal);
   if (front <= kMostPull_eps * rounding) return front;
   const fdcg_graph& graph = specimen_.graph();
   std::vector<std::uint32_t> fan(fdcg_get_fan(&graph, corner, nullptr, 0));
@@ -317,17 +318,16 @@ void Judge::look_at_place(Tick& tick, Verdicts& v) {
 
 bool Judge::look_at_descent(Tick& tick, Verdicts& v) const {
   const bool is_corner = tick.after.state == FDCG_VERTEX;  // where friction holds nothing
-  const bool is_exact = is_exact_ && specimen_.descent != nullptr;
-  if (specimen_.descent == nullptr && !is_corner) return false;
+  const bool is_closed = specimen_.inside != nullptr, is_exact = is_exact_ && is_closed;
+  if (!is_closed && !is_corner) return false;
   if (has_friction_ && !is_corner && (!is_exact || tick.after.state == FDCG_FACE)) return false;
   const double reach = is_exact ? descent_from(tick) : merged_descent_from(tick) - deviation_;
   v.worst_descent_eps = std::max(v.worst_descent_eps, reach / tick.rounding);
-  if (!is_exact && !has_friction_ && specimen_.inside != nullptr && is_in_merged_air(tick))
+  if (!is_exact && !has_friction_ && is_closed && is_in_merged_air(tick))
     tick.faults |= bit(Fault::descent) | bit(Fault::free_air);
   if (!(reach > kMostDescent_eps * tick.rounding) || (is_corner && has_friction_ && is_held_at_corner(tick))) return true;
   tick.faults |= bit(Fault::descent);
-  const bool is_known = specimen_.inside != nullptr;
-  if (is_known && specimen_.inside->where(tick.hip) == InsideGrid::Where::outside) tick.faults |= bit(Fault::free_air);
+  if (is_closed && specimen_.inside->where(tick.hip) == InsideGrid::Where::outside) tick.faults |= bit(Fault::free_air);
   return true;
 }
 
@@ -354,17 +354,17 @@ void Judge::look_at_way(Tick& tick) {
 }
 
 // A busy corner that a way passes within rounding may be met, to be let go in the same tick (contact-model FREE-8, CORNER-4).
-// Nothing else may be met by a way that is clear. The rounding is that of the rule, and of the doubles that it is asked in, of
-// which the file's floats are exact places.
+// Nothing else may be met by a way that is clear. The rounding is that of the rule, where hundreds of faces are within it, and
+// of the doubles that it is asked in.
 bool Judge::passes_busy_corner(const Hip& from, const Hip& to) const {
-  constexpr double kRule = 4 * std::numeric_limits<double>::epsilon(), kDouble = 0x1p-50;
+  constexpr double kRule_eps = 4, kDouble = 0x1p-50;
   const Hip way = difference(to, from);
   for (const Hip& corner : specimen_.busy_points) {
     const Hip reach = difference(corner, from);
     const double share = std::clamp(dot(reach, way) / dot(way, way), 0.0, 1.0);
     const Hip nearest = {from[0] + share * way[0], from[1] + share * way[1], from[2] + share * way[2]};
     const double sum = std::abs(corner[0]) + std::abs(corner[1]) + std::abs(corner[2]) + specimen_.header().extent;
-    if (long_length(nearest, corner) <= kRule * sum + kDouble * (sum + norm(way))) return true;
+    if (long_length(nearest, corner) <= kRule_eps * epsilon_ * sum + kDouble * (sum + norm(way))) return true;
   }
   return false;
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <map>
 #include <set>
 #include <stdexcept>
 #include <utility>
@@ -66,10 +67,10 @@ Specimen::Specimen(Body b) : body(std::move(b)), mesh(body.soup, body.options) {
   read_shapes();
   read_deviation();
   find_focus();
-  if (!body.is_closed) return;
   const ExactSolid solid(triangulated(body.soup), header());
-  inside = std::make_unique<InsideGrid>(solid.triangles());
   descent = std::make_unique<Descent>(solid.triangles());
+  if (!body.is_closed) return;
+  inside = std::make_unique<InsideGrid>(solid.triangles());
   if (header().max_deviation == 0 && header().node_count <= kMostCertified)
     certificate = std::make_unique<Certificate>(graph());
 }
@@ -78,6 +79,7 @@ Specimen::Specimen(Body b) : body(std::move(b)), mesh(body.soup, body.options) {
 void Specimen::read_corners() {
   const fdcg_graph& g = graph();
   std::set<Hip> points;
+  std::map<Hip, std::uint32_t> corners_at;
   for (const bake::Vec3& p : body.soup.points) {
     Hip local = {p.x - header().origin[0], p.y - header().origin[1], p.z - header().origin[2]};
     for (double& x : local)
@@ -86,10 +88,13 @@ void Specimen::read_corners() {
   }
   for (std::uint32_t c = 0; c < header().corner_count; ++c) {
     const fdcg_corner_info corner = fdcg_get_corner(&g, c);
-    corners.push_back({hip_of(corner.point), hip_of(corner.normal), false});
+    corners.push_back({hip_of(corner.point), hip_of(corner.normal), false, false});
     if (points.count(corners.back().point) == 0) throw std::runtime_error("a corner of the graph is no point of its source");
     if (corner.fan_count > FDCG_BUSY_FAN) busy_points.push_back(corners.back().point);
+    corners_at[corners.back().point] += 1;
   }
+  for (CornerShape& corner : corners)
+    corner.is_shared = corners_at[corner.point] > 1;
 }
 
 void Specimen::read_shapes() {

@@ -55,7 +55,8 @@ struct EdgeShape {
 };
 struct CornerShape {
   Hip point, normal;
-  bool is_open;  // on a boundary
+  bool is_open;    // on a boundary
+  bool is_shared;  // another corner is at the same point
 };
 
 // Throws std::runtime_error where the compiler refuses the body.
@@ -73,7 +74,7 @@ class Specimen {
   std::vector<Hip> busy_points;              // corners of more than FDCG_BUSY_FAN connections
   double stated_deviation = 0;               // how far, by its file, the graph's faces lie from the mesh's
   std::unique_ptr<InsideGrid> inside;        // of closed bodies
-  std::unique_ptr<Descent> descent;          // of closed bodies
+  std::unique_ptr<Descent> descent;          // at corners that are neither open nor shared
   std::unique_ptr<Certificate> certificate;  // of those whose faces are planar exactly
 
   [[nodiscard]] const fdcg_graph& graph() const { return mesh.view(); }
