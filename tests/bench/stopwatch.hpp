@@ -55,11 +55,20 @@ class Stopwatch {
 };
 
 // Values sorted, to be asked for shares: at(0.99) is the 99th percentile, at(1) the largest.
+// finely_at(): of times that a clock counts in steps, so that many are equal, as if these were spread evenly over their step.
 class Percentiles {
  public:
   explicit Percentiles(std::vector<float> values) : values_(std::move(values)) { std::sort(values_.begin(), values_.end()); }
   [[nodiscard]] double at(double share) const {
     return values_.empty() ? 0 : values_[static_cast<std::size_t>(share * static_cast<double>(values_.size() - 1))];
+  }
+  [[nodiscard]] double finely_at(double share) const {
+    const float value = static_cast<float>(at(share));
+    const auto [begin, end] = std::equal_range(values_.begin(), values_.end(), value);
+    if (begin == values_.begin() || end == values_.end()) return value;
+    const double place = share * static_cast<double>(values_.size() - 1) + 0.5 - static_cast<double>(begin - values_.begin());
+    const double low = (*(begin - 1) + value) / 2, high = (value + *end) / 2;
+    return low + (high - low) * place / static_cast<double>(end - begin);
   }
 
  private:

@@ -75,8 +75,8 @@ void run_way(const char* path, int rounds, Runner (&runners)[kSides], const Stop
     for (Runner& runner : runners) {
       touching = runner.times.size();
       const Percentiles sorted(runner.times);
-      runner.median.push_back(sorted.at(0.5));
-      runner.percentile.push_back(sorted.at(0.99));
+      runner.median.push_back(sorted.finely_at(0.5));
+      runner.percentile.push_back(sorted.finely_at(0.99));
     }
   }
   std::printf("%s,%.4f", path, static_cast<double>(touching) / static_cast<double>(way.size()));
