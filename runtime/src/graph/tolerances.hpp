@@ -138,6 +138,12 @@ inline constexpr Real kClearlyNearer2 = Real(1) / (1 << 20);
 template <class Real>
 inline constexpr Real kNearerThanApex2 = Real(1) / 4;
 
+// CORNER-3: of the product with a corner's normal, which is stored in 16 bits a coordinate.
+template <class Real>
+inline Real stored_normal_rounding(const Vec3<Real>& t) {
+  return norm1(t) / FDCG_NORMAL_SCALE;
+}
+
 // ---- A busy corner
 
 // CORNER-4, CORNER-7: directions that reach so nearly as far tie: the rounding of boxes and directions, of the file's numbers,

@@ -192,17 +192,18 @@ inline Feature next_from_corner(Walk<Geometry>& walk, CornerRef<Geometry> corner
     search_all(search, corner);
   }
   const Feature found = search.best.feature;
+  const Real front = dot(t, corner.normal()), rounding = stored_normal_rounding(t);
   if (walk.graph.has_inexact_nodes()) {  // what CORNER-4 says is not exact
     const Real noise = slab_depth(2 * walk.graph.max_deviation(), walk.hip_bound);
     const bool is_apex = found.is_free() && search.lost2 == search.best.distance2;  // nothing else leads nearer
-    if (is_apex && dot(t, corner.normal()) > noise) return kFree;
+    if (is_apex && front > noise + rounding) return kFree;
     const Real share = found.is_free() ? kNearerThanApex2<Real> : kClearlyNearer2<Real>;
     if (search.lost2 < share * search.best.distance2 && search.best.distance2 > square(noise)) return kFree;
   }
   if (is_inside) return found.is_free() ? walk.active : found;
   if (found.is_free()) {
     const bool may_hold = !corner.is_open() || FDCG_MUTANT("open-corner");
-    return may_hold && dot(t, corner.normal()) < 0 ? walk.active : kFree;
+    return may_hold && front < -rounding ? walk.active : kFree;
   }
   if (!holds(walk, found)) return kFree;
   const bool is_rim = found.state == FDCG_EDGE && walk.graph.connection(found.index).type() == FDCG_BOUNDARY;

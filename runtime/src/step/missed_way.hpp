@@ -116,8 +116,8 @@ template <class Geometry, class Real = typename Geometry::Real>
 // Whether a way that may have missed a node, from `from`, has come in before `x`. An open surface has no inside: there the line
 // comes from the way's beginning, in front of what it may have missed.
 template <class Geometry, class Real = typename Geometry::Real>
-[[nodiscard]] inline bool has_come_in(const GraphView<Geometry>& graph, const FirstHit<Real>& missed, const Vec3<Real>& from,
-                                      const Vec3<Real>& x, uint32_t* work_left) {
+[[nodiscard, gnu::noinline, gnu::cold]] bool has_come_in(const GraphView<Geometry>& graph, const FirstHit<Real>& missed,
+                                                         const Vec3<Real>& from, const Vec3<Real>& x, uint32_t* work_left) {
   if (!is_in_bounds(graph, x)) return false;
   const bool is_closed = graph.header()->connection_type_count[FDCG_BOUNDARY] == 0;
   const Vec3<Real> outside = is_closed ? out_of_bounds(graph, x) : in_front_of(graph, missed, from);

@@ -44,6 +44,7 @@ class Trail {
   }
   // A feature has let the god-object go.
   void let_go() { was_let_go_ = true; }
+  [[nodiscard]] bool was_let_go() const { return was_let_go_; }
   // Whether the circle leads through free space, past faces, and the HIP is clearly over none of them. Faces that move may have
   // been squeezed to lines, which are under nothing.
   [[nodiscard, gnu::noinline, gnu::cold]] bool passes_hip_by(const Walk<Geometry>& walk) const {
@@ -154,6 +155,18 @@ inline bool is_shorter(const Vec3<Real>& a, const Vec3<Real>& b) {
   return dot(a, a) < dot(b, b);
 }
 
+// Whether a HIP among merged faces is told to be outside, as FREE-9 tells it: what lets go may hold again by rounding alone.
+template <class Geometry, class Real = typename Geometry::Real>
+[[gnu::noinline, gnu::cold]] bool is_told_outside(const Walk<Geometry>& walk, FreeSpace* space) {
+  if constexpr (Geometry::kKeepsDirections) {
+    const GraphView<Geometry>& graph = walk.graph;
+    if (!graph.has_inexact_nodes() || graph.header()->connection_type_count[FDCG_BOUNDARY] != 0) return false;
+    return !has_come_in(graph, {}, walk.hip, walk.hip, &space->missed_work_left) && space->missed_work_left > 0;
+  } else {
+    return false;
+  }
+}
+
 template <class Geometry>
 FDCG_OUTLINED void let_go_to_hip(Walk<Geometry>& walk) {
   walk.place(walk.hip, kFree);
@@ -200,7 +213,7 @@ Progress move_god_object(Walk<Geometry>& walk, Feature start, Vec3<Real> start_g
     }
     if (!FDCG_MUTANT("met-again") && trail.has_met_again(walk) && !goes_on_at_corner(walk, &trail) &&
         !trail.begins_again(walk)) {
-      if (trail.passes_hip_by(walk)) {
+      if (trail.passes_hip_by(walk) || (trail.was_let_go() && is_told_outside(walk, space))) {
         let_go_to_hip(walk);
         return progress;
       }
@@ -212,15 +225,16 @@ Progress move_god_object(Walk<Geometry>& walk, Feature start, Vec3<Real> start_g
     if (walk.work_left == 0) {
       // No nearer: where the tick began the next one would do the same; elsewhere, with the HIP where it was, a circle may take
       // several ticks, and a way around a fan, nearer by less than rounding, as many as pass all faces (contact-model TICK-6).
+      // There the god-object moves, even where the HIP is so far away that the gap does not.
       constexpr uint32_t kMostStalledTicks = 3, kFacesATick = 8;
       const double* const last = space->begun->hip;
       const bool is_held = last[0] == walk.hip.x && last[1] == walk.hip.y && last[2] == walk.hip.z;
       const bool is_at_start = walk.active == start;
-      const Vec3<Real> gap = walk.gap(), begun = gap_begun(walk, *space);
       uint32_t most = kMostStalledTicks;
-      if (norm1(gap - begun) > 0) most += walk.graph.header()->node_count / kFacesATick;
+      if (norm1(walk.god_object - narrow<Real>(space->begun->god_object)) > 0)
+        most += walk.graph.header()->node_count / kFacesATick;
       uint32_t* const stalled = &space->inner->sweep.stalled_ticks;
-      const bool gets_on = is_shorter(gap, begun) || (!is_held && !is_at_start);
+      const bool gets_on = is_shorter(walk.gap(), gap_begun(walk, *space)) || (!is_held && !is_at_start);
       *stalled = gets_on ? 0 : *stalled + (*stalled < most);
       if (gets_on || (*stalled < most && !is_at_start)) {
         progress.flags |= FDCG_RESULT_TRANSITION_BOUND;

@@ -114,3 +114,41 @@ TEST_CASE("a god-object crosses any number of faces towards a HIP that is too fa
   CHECK(contact.result.state == FDCG_FREE);  // past the far rim
   CHECK(norm(contact.force()) == 0);
 }
+
+// In floats a god-object near the corner of a long pit goes over thousands of faces, by less than changes the distance of a far
+// HIP. The tick that ends on its way says so: else it would be a rest, with force in free air, that the next tick leaves.
+TEST_CASE("a walk around the corner of a long pit is carried over, however far away the HIP is") {
+  constexpr int kWalks = 200, kMostTicks = 2000;
+  const Rotation turn = random_rotation(3);
+  const auto placed = [&](const Hip& p) {  // in the pit's frame, before it is turned and made long
+    PolygonSoup one;
+    one.points = {{p[0], p[1], p[2]}};
+    const fdcg::bake::Vec3 at = transformed(one, turn).points[0];
+    return Hip{1000 * at.x, at.y, at.z};
+  };
+  PolygonSoup pit = transformed(triangulated(cone_pit(10'000)), turn);
+  for (fdcg::bake::Vec3& p : pit.points)
+    p.x *= 1000;
+  CompileOptions options;
+  options.precision = Precision::f32;
+  const CompiledMesh mesh(pit, options);
+  Random random(4);
+  int carried = 0, left = 0;
+  for (int i = 0; i < kWalks; ++i) {
+    Contact contact(mesh.view(), contact_params(0, 0));
+    contact.step(placed({0, 0, 0.05}));
+    contact.step(placed({random.uniform(-1e-3, 1e-3), random.uniform(-1e-3, 1e-3), -1e-3}));
+    if (contact.result.state == FDCG_FREE) continue;
+    const Hip far = {random.uniform(-1, 1), random.uniform(-200, 200), random.uniform(-200, 200)};
+    int ticks = 0;
+    do
+      contact.step(far);
+    while ((contact.result.flags & kCarried) != 0 && ++ticks < kMostTicks);
+    carried += ticks > 0;
+    const Hip rest = contact.god_object();
+    contact.step(far);
+    left += distance(contact.god_object(), rest) > 0;
+  }
+  CHECK(carried > 10);
+  CHECK(left == 0);
+}
