@@ -73,7 +73,7 @@ class InsideTest : public Sweep<Geometry> {
 };
 
 template <class Geometry, class Real = typename Geometry::Real>
-inline bool is_in_bounds(const GraphView<Geometry>& graph, const Vec3<Real>& x) {
+[[gnu::noinline, gnu::cold]] bool is_in_bounds(const GraphView<Geometry>& graph, const Vec3<Real>& x) {
   const fdcg_header& header = *graph.header();
   const double at[3] = {x.x, x.y, x.z};
   for (int k = 0; k < 3; ++k) {
@@ -114,13 +114,13 @@ template <class Geometry, class Real = typename Geometry::Real>
 }
 
 // Whether a way that may have missed a node, from `from`, has come in before `x`. An open surface has no inside: there the line
-// comes from the way's beginning, in front of what it may have missed.
+// comes from the way's beginning, in front of what it may have missed; of a closed one neither is asked.
 template <class Geometry, class Real = typename Geometry::Real>
-[[nodiscard, gnu::noinline, gnu::cold]] bool has_come_in(const GraphView<Geometry>& graph, const FirstHit<Real>& missed,
+[[nodiscard, gnu::noinline, gnu::cold]] bool has_come_in(const GraphView<Geometry>& graph, const FirstHit<Real>* missed,
                                                          const Vec3<Real>& from, const Vec3<Real>& x, uint32_t* work_left) {
   if (!is_in_bounds(graph, x)) return false;
   const bool is_closed = graph.header()->connection_type_count[FDCG_BOUNDARY] == 0;
-  const Vec3<Real> outside = is_closed ? out_of_bounds(graph, x) : in_front_of(graph, missed, from);
+  const Vec3<Real> outside = is_closed ? out_of_bounds(graph, x) : in_front_of(graph, *missed, from);
   return InsideTest<Geometry>(graph, outside, x, work_left).holds();
 }
 
@@ -131,7 +131,7 @@ template <class Geometry, class Real = typename Geometry::Real>
   const FirstHit<Real>& missed = sweep.missed();
   if (missed.node == FDCG_NONE) return {};
   const Vec3<Real> from = sweep.point_at(0);
-  if (has_come_in(graph, missed, from, to, work_left)) return missed;
+  if (has_come_in(graph, &missed, from, to, work_left)) return missed;
   // The other way round it comes in where it went out.
   Sweep<Geometry> back(graph, to, to, from, kFree, work_left);
   FirstHit<Real> out;
@@ -142,7 +142,7 @@ template <class Geometry, class Real = typename Geometry::Real>
   if (!(inside > 0)) return {};
   constexpr Real kShares[] = {0.5, 0.75, 0.25};
   for (const Real share : kShares) {
-    if (has_come_in(graph, missed, from, sweep.point_at(missed.fraction + inside * share), work_left)) return missed;
+    if (has_come_in(graph, &missed, from, sweep.point_at(missed.fraction + inside * share), work_left)) return missed;
   }
   return {};
 }

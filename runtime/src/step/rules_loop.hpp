@@ -48,7 +48,7 @@ class Trail {
   // Whether the circle leads through free space, past faces, and the HIP is clearly over none of them. Faces that move may have
   // been squeezed to lines, which are under nothing.
   [[nodiscard, gnu::noinline, gnu::cold]] bool passes_hip_by(const Walk<Geometry>& walk) const {
-    if (!Geometry::kKeepsDirections || !was_let_go_) return false;
+    if (!Geometry::kKeepsDirections) return false;
     bool is_beside = false;
     for (int i = 0; i < count_; ++i) {
       if (visited_[i] >> 32 != FDCG_FACE) continue;
@@ -161,7 +161,8 @@ template <class Geometry, class Real = typename Geometry::Real>
   if constexpr (Geometry::kKeepsDirections) {
     const GraphView<Geometry>& graph = walk.graph;
     if (!graph.has_inexact_nodes() || graph.header()->connection_type_count[FDCG_BOUNDARY] != 0) return false;
-    return !has_come_in(graph, {}, walk.hip, walk.hip, &space->missed_work_left) && space->missed_work_left > 0;
+    return !has_come_in<Geometry, Real>(graph, nullptr, walk.hip, walk.hip, &space->missed_work_left) &&
+           space->missed_work_left > 0;
   } else {
     return false;
   }
@@ -213,7 +214,7 @@ Progress move_god_object(Walk<Geometry>& walk, Feature start, Vec3<Real> start_g
     }
     if (!FDCG_MUTANT("met-again") && trail.has_met_again(walk) && !goes_on_at_corner(walk, &trail) &&
         !trail.begins_again(walk)) {
-      if (trail.passes_hip_by(walk) || (trail.was_let_go() && is_told_outside(walk, space))) {
+      if (trail.was_let_go() && (trail.passes_hip_by(walk) || is_told_outside(walk, space))) {
         let_go_to_hip(walk);
         return progress;
       }
@@ -230,11 +231,11 @@ Progress move_god_object(Walk<Geometry>& walk, Feature start, Vec3<Real> start_g
       const double* const last = space->begun->hip;
       const bool is_held = last[0] == walk.hip.x && last[1] == walk.hip.y && last[2] == walk.hip.z;
       const bool is_at_start = walk.active == start;
+      const Vec3<Real> begun = narrow<Real>(space->begun->god_object);
       uint32_t most = kMostStalledTicks;
-      if (norm1(walk.god_object - narrow<Real>(space->begun->god_object)) > 0)
-        most += walk.graph.header()->node_count / kFacesATick;
+      if (norm1(walk.god_object - begun) > 0) most += walk.graph.header()->node_count / kFacesATick;
       uint32_t* const stalled = &space->inner->sweep.stalled_ticks;
-      const bool gets_on = is_shorter(walk.gap(), gap_begun(walk, *space)) || (!is_held && !is_at_start);
+      const bool gets_on = is_shorter(walk.gap(), begun - walk.hip) || (!is_held && !is_at_start);
       *stalled = gets_on ? 0 : *stalled + (*stalled < most);
       if (gets_on || (*stalled < most && !is_at_start)) {
         progress.flags |= FDCG_RESULT_TRANSITION_BOUND;
