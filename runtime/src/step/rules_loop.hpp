@@ -157,7 +157,7 @@ inline bool is_shorter(const Vec3<Real>& a, const Vec3<Real>& b) {
 
 // Whether a HIP among merged faces is told to be outside, as FREE-9 tells it: what lets go may hold again by rounding alone.
 template <class Geometry, class Real = typename Geometry::Real>
-[[gnu::noinline, gnu::cold]] bool is_told_outside(const Walk<Geometry>& walk, FreeSpace* space) {
+inline bool is_told_outside(const Walk<Geometry>& walk, FreeSpace* space) {
   if constexpr (Geometry::kKeepsDirections) {
     const GraphView<Geometry>& graph = walk.graph;
     if (!graph.has_inexact_nodes() || graph.header()->connection_type_count[FDCG_BOUNDARY] != 0) return false;
