@@ -9,7 +9,7 @@ import re
 import subprocess
 import unittest
 
-from anywhere import C, ROOT, RUNTIME, AnywhereCase, qemu
+from anywhere import C, ONE_EFFECT, ONE_GRAPH, ONE_SPHERE, OPENING, ROOT, RUNTIME, AnywhereCase, qemu
 
 PARTS = ROOT / "tests" / "consumer" / "parts"
 
@@ -36,6 +36,8 @@ COMPILER_CALLS = {"memcpy", "memset", "memmove", "memcmp"}
 # the C library's square root, and what GCC calls where the processor has no instruction (64-bit integers, doubles)
 ARM_CALLS = r"sqrtf?|__aeabi_\w+|__[a-z]+[ds]i\d"
 
+CORE = {source.stem for source in (RUNTIME / "src").rglob("*.cpp")} - SUPPORT
+
 
 class WeightCase(AnywhereCase):
     def sections(self, tool, library):
@@ -51,24 +53,20 @@ class WeightCase(AnywhereCase):
 
     def weigh(self, what, tool, library, bar, limit):
         sizes = self.sections(tool, library)
-        core = sum(size for name, size in sizes.items() if name not in SUPPORT)
-        print(f"{what}: core {core} bytes (bar {bar}: {'holds' if core <= bar else 'does not hold'}), all {sum(sizes.values())}: "
+        core = sum(sizes.values())
+        print(f"{what}: core {core} bytes (bar {bar}: {'holds' if core <= bar else 'does not hold'}): "
               + ", ".join(f"{name} {size}" for name, size in sorted(sizes.items(), key=lambda entry: -entry[1]) if size > 0))
         self.assertGreater(sizes["servo_step"], 1000)
         self.assertLessEqual(core, limit, f"{what}: {sizes}")
 
-    def library(self, name, *options):
-        folder = self.path(name)
-        self.run_program("cmake", "-S", str(ROOT), "-B", folder, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release",
-                         "-DFDCG_RUNTIME_ONLY=ON", "-DFDCG_BUILD_TESTS=OFF", *options)
-        self.run_program("cmake", "--build", folder)
-        return os.path.join(folder, "runtime", "libfdcg_runtime.a")
+    def library(self, name, *options, of=None):
+        return self.build_runtime(self.path(name), "-DCMAKE_BUILD_TYPE=Release", *options, of=of)
 
 
 class TextSize(WeightCase):
     def test_x86_64_release(self):
-        self.weigh("x86-64, f64 and f32", "size", self.library("both"), **X86_BOTH)
-        self.weigh("x86-64, f64", "size", self.library("f64", "-DFDCG_WITH_F32=OFF", "-DFDCG_WITH_MESSAGES=OFF"), **X86_F64)
+        self.weigh("x86-64, f64 and f32", "size", self.library("both", of=CORE), **X86_BOTH)
+        self.weigh("x86-64, f64", "size", self.library("f64", "-DFDCG_WITH_F32=OFF", "-DFDCG_WITH_MESSAGES=OFF", of=CORE), **X86_F64)
 
     def test_x86_64_code_of_a_tick(self):
         """What GCC 12 gets wrong without a word. It drops the calls of a function that does nothing but prefetch, unless it is
@@ -76,7 +74,7 @@ class TextSize(WeightCase):
         function marked cold for a sign that what leads there is rare, and moves that out of fdcg_step too."""
         if platform.machine() != "x86_64":
             self.skipTest("looks for an instruction of x86-64")
-        library = self.library("both")
+        library = self.library("both", of={"servo_step"})
         code = self.run_program("objdump", "-d", "--no-show-raw-insn", library).stdout.decode()
         step = re.search(r"^servo_step\.cpp\.o:.*?(?=^\S+\.o:|\Z)", code, re.M | re.S)
         self.assertGreater(len(re.findall(r"\bprefetch", step.group())), 8)
@@ -89,7 +87,8 @@ class TextSize(WeightCase):
     def test_cortex_m7_f32_built_for_size(self):
         self.need("arm-none-eabi-g++", "arm-none-eabi-size")
         for what, terms, weights in (("", "OFF", M7_F32), (", with terms of friction", "ON", M7_F32_TERMS)):
-            library = self.cross_runtime("cortex-m7", "-DFDCG_WITH_F64=OFF", "-DFDCG_WITH_MESSAGES=OFF", "-DFDCG_WITH_FRICTION_TERMS=" + terms)
+            library = self.cross_runtime("cortex-m7", "-DFDCG_WITH_F64=OFF", "-DFDCG_WITH_MESSAGES=OFF", "-DFDCG_WITH_FRICTION_TERMS=" + terms,
+                                         name="terms-" + terms, of=CORE)
             self.weigh("cortex-m7 -Os, f32" + what, "arm-none-eabi-size", library, **weights)
 
 
@@ -160,7 +159,7 @@ class Parts(PartsCase):
             self.told(f"x86-64: {name}", self.native(name, self.library("both"), self.embedded()), bar, bar)
 
     def test_x86_64_link_time_optimisation(self):
-        library = self.library("lto", *self.F64, *self.LEAN, *LTO)
+        library = self.library("lto", *self.F64, *self.LEAN, *LTO, of=ONE_GRAPH)
         self.embedded("f64")
         program = self.path("one_graph-lto")
         self.run_program("cc", *C, "-O2", "-flto=auto", "-I", str(RUNTIME / "include"), "-I", str(self.folder),
@@ -212,7 +211,7 @@ int main(void) {
 class PartsOfGraphs(PartsCase):
     def test_x86_64_a_graph(self):
         for program, name, options, bar, limit in self.X86_GRAPHS:
-            text = self.native(program, self.library(name, *options), self.embedded(name[:3] if name.startswith("f") else "f32"))
+            text = self.native(program, self.library(name, *options, of=ONE_GRAPH), self.embedded(name[:3] if name.startswith("f") else "f32"))
             self.told(f"x86-64, {name}: {program}", text, bar, limit)
 
 
@@ -228,9 +227,10 @@ class PartsOnCortexM7(PartsCase):
     def test_cortex_m7(self):
         self.need("arm-none-eabi-g++", "arm-none-eabi-size")
         folder, built = self.embedded(), {}
+        of = {"f32": ONE_GRAPH | ONE_SPHERE | ONE_EFFECT}  # of the others a scene is linked too
         for program, name, options, bar, limit in (*((name, "f32", self.M7_GRAPHS[0][2], bar, bar) for name, bar in self.M7.items()), *self.M7_GRAPHS):
             if name not in built:
-                built[name] = self.cross_runtime("cortex-m7", *options, name=name)
+                built[name] = self.cross_runtime("cortex-m7", *options, name=name, of=of.get(name))
             for link in ((), ("-Wl,--gc-sections",)):
                 text = self.on_m7(program, built[name], folder, *link)
                 if link or program != "one_scene":  # a scene's objects hold more than one asks for
@@ -252,7 +252,7 @@ class StepCost(WeightCase):
 
     def test_cortex_m7_f32_at_a_hands_speed(self):
         self.need("arm-none-eabi-g++", "qemu-system-arm")
-        library = self.cross_runtime("cortex-m7", "-DFDCG_WITH_F64=OFF", "-DCMAKE_CXX_FLAGS_RELEASE=-O2 -DNDEBUG")
+        library = self.cross_runtime("cortex-m7", "-DFDCG_WITH_F64=OFF", "-DCMAKE_CXX_FLAGS_RELEASE=-O2 -DNDEBUG", of=ONE_GRAPH | OPENING)
         graphs = os.environ["FDCG_HASH_GRAPHS"]
         program = self.firmware("cortex-m7", library, str(ROOT / "tests" / "anywhere" / "step_cost.c"), graphs + "/graphs.c",
                                 flags=["-DFDCG_ON_BOARD", "-I", graphs])
@@ -308,8 +308,9 @@ int main(int argc, char** argv) {
 }
 """
 
-    def library(self, name, *options):
-        return super().library(name, "-DCMAKE_CXX_FLAGS_RELEASE=-O0 -DNDEBUG", *options)  # quicker made, and it says the same
+    def library(self, name, *options, of=OPENING):
+        """Quicker made than what ships, and it says the same."""
+        return super().library(name, "-DCMAKE_CXX_FLAGS_RELEASE=-O0 -DNDEBUG", *options, of=of)
 
     def said(self, name, *options):
         library = self.library(name, *options)
@@ -418,7 +419,7 @@ int main(int argc, char** argv) {
 """
 
     def test_a_finger_has_a_material_without_terms_too(self):
-        library = self.library("no-terms", "-DFDCG_WITH_FRICTION_TERMS=OFF")
+        library = self.library("no-terms", "-DFDCG_WITH_FRICTION_TERMS=OFF", of=None)
         program, graph = self.path("finger-program"), self.path("finger.fdcg")
         self.run_program("cc", "-std=c11", "-I", str(RUNTIME / "include"), self.write("finger.c", self.FINGER), library, "-lm", "-o", program)
         self.fdcg("compile", str(ROOT / "testdata" / "meshes" / "good" / "cube_quads.off"), "-q", "-o", graph)
