@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """A build backend (PEP 517): CMake builds the module, and a wheel is a zip of it. FDCG_BUILD_FOLDER keeps the build; without it
-each one begins anew."""
+each one begins anew. CMAKE_ARGS: more arguments for cmake, as a shell would read them."""
 import base64
 import csv
 import hashlib
@@ -8,6 +8,7 @@ import io
 import os
 import pathlib
 import re
+import shlex
 import subprocess
 import sys
 import sysconfig
@@ -29,8 +30,8 @@ def _tag():
 
 def _build(folder):
     subprocess.run(["cmake", "-S", str(ROOT), "-B", folder, "-DCMAKE_BUILD_TYPE=Release", "-DFDCG_BUILD_TESTS=OFF",
-                    "-DFDCG_BUILD_PYTHON=ON", "-DCMAKE_UNITY_BUILD=ON", f"-DPYTHON_EXECUTABLE={sys.executable}", f"-DPython_EXECUTABLE={sys.executable}"],
-                   check=True)
+                    "-DFDCG_BUILD_PYTHON=ON", "-DCMAKE_UNITY_BUILD=ON", f"-DPYTHON_EXECUTABLE={sys.executable}", f"-DPython_EXECUTABLE={sys.executable}",
+                    *shlex.split(os.environ.get("CMAKE_ARGS", ""))], check=True)
     subprocess.run(["cmake", "--build", folder, "--parallel", str(os.cpu_count()), "--target", "fdcg_python"], check=True)
     return pathlib.Path(folder, "python", "fdcg")
 
