@@ -12,7 +12,8 @@ namespace fdcg {
 //
 // A move that ends on a plane up to rounding error is on that side, wherever it began: by which of the two features it goes on
 // must not depend on the last digits of the god-object's place, or the next tick would choose the other. It crosses where it
-// ends, unless it crosses another side before: cut to its start, one along a side would be stopped for ever.
+// ends, unless it crosses another side before: cut to its start, one along a side would be stopped for ever. Sides of a merged
+// face that are one line in the mesh are so but for its deviation, which counts as rounding there.
 template <class Real>
 struct Crossing {
   uint32_t local_side = FDCG_NONE;
@@ -33,20 +34,21 @@ template <class Geometry, class Real = typename Geometry::Real>
 [[gnu::noinline]] Crossing<Real> first_crossing_from(uint32_t k, NodeRef<Geometry> node, const Vec3<Real>& from,
                                                      const Vec3<Real>& to) {
   const Real rounding = FDCG_MUTANT("ends-on-plane") ? Real(0) : on_plane_rounding(to, node.extent());
-  Crossing<Real> first;
+  const Real along = node.is_inexact() ? rounding + Real(node.graph().max_deviation()) : rounding;
+  Crossing<Real> first = {FDCG_NONE, 2};  // later than any
   for (; k < node.side_count(); ++k) {
     const auto& plane = node.voronoi_plane(k);
     const Real s1 = plane.distance(to);
     if (!(s1 >= -rounding)) continue;
     const Real s0 = plane.distance(from);
     if ((FDCG_MUTANT("crossing-sign") && !(s1 * s0 < 0)) || (FDCG_MUTANT("crossing-onto") && !(s0 <= 0 && s1 > 0))) continue;
-    const bool ends_there = (s1 <= rounding || s1 <= s0) && !FDCG_MUTANT("along-side");
+    const bool ends_there = (s1 <= along || s1 <= s0) && !FDCG_MUTANT("along-side");
     const Real fraction = ends_there ? Real(1) : s0 >= 0 ? Real(0) : -s0 / (s1 - s0);
     // A face like a needle may be narrower than rounding: of two sides that the move ends on, the one counts that reaches
     // there, or nearer to it.
-    const bool is_tie = fraction == 1 && first.fraction == 1 && first.local_side != FDCG_NONE;
-    if (first.local_side == FDCG_NONE ||
-        (FDCG_MUTANT("last-crossing") ? fraction > first.fraction : fraction < first.fraction) ||
+    const bool is_tie = fraction == 1 && first.fraction == 1;
+    if ((FDCG_MUTANT("last-crossing") ? first.local_side == FDCG_NONE || fraction > first.fraction
+                                      : fraction < first.fraction) ||
         (is_tie && is_farther_past_ends(node, first.local_side, k, to)))
       first = {k, fraction};
   }
@@ -194,8 +196,7 @@ template <class Geometry, class Real = typename Geometry::Real>
 // ends: a face like a needle may be narrower than that rounding, and near the planes of all its sides.
 template <class Geometry, class Real = typename Geometry::Real>
 inline uint32_t side_under(const Walk<Geometry>& walk, NodeRef<Geometry> node) {
-  Real rounding = rim_rounding(walk.god_object, Real(walk.graph.header()->extent));
-  if (walk.graph.has_inexact_nodes()) rounding = rounding + Real(walk.graph.max_deviation());
+  const Real rounding = rim_rounding(walk.god_object, Real(walk.graph.header()->extent)) + Real(walk.graph.max_deviation());
   for (uint32_t k = 0; k < node.side_count(); ++k) {
     if (distance_beyond(node, k, walk.god_object) >= -rounding && is_between_ends(node, k, walk.god_object)) return k;
   }
