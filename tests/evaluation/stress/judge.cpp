@@ -276,7 +276,8 @@ double Judge::descent_from(const Tick& tick) const {
     double most = has_friction_ ? 0 : std::abs(dot(gap, edge.direction));
     // Where it ends, but for rounding, the corner is meant (contact-model FACE-6).
     for (const std::uint32_t corner : edge.corner) {
-      if (!has_friction_ && is_meant(corner, tick.god_object)) most = std::max(most, descent_at(corner, tick));
+      if (has_friction_ || !is_meant(corner, tick.god_object)) continue;
+      most = std::max(most, is_exact_ ? descent_at(corner, tick) : merged_descent_at(corner, tick));
     }
     const Hip t = difference(tick.hip, edge.start);
     for (const std::uint32_t n : edge.node) {  // square to the edge, into the face

@@ -149,6 +149,7 @@ class Judge {
   void pass_over_between_sheets(Tick& tick, Verdicts& v) const;
   [[nodiscard]] bool is_on_other_sheet(const Tick& tick) const;
   [[nodiscard]] double merged_descent_from(const Tick& tick) const;
+  [[nodiscard]] double merged_descent_at(std::uint32_t corner, const Tick& tick) const;
   [[nodiscard]] Hip outwards(const Tick& tick) const;
   [[nodiscard]] bool is_in_merged_air(const Tick& tick) const;
   [[nodiscard]] bool rests_on_mesh(const Tick& tick) const;

@@ -88,12 +88,16 @@ double Judge::turned(double edge_length, double depth) const {
 // How far a face or an edge of the graph at the god-object, of those that hold it, leads towards the HIP.
 double Judge::merged_descent_from(const Tick& tick) const {
   if (tick.after.state == FDCG_FACE) return descent_from(tick);
+  if (tick.after.state == FDCG_VERTEX) return merged_descent_at(tick.after.feature, tick);
+  return descent_from(tick) - turned(specimen_.edges[tick.after.feature].length, distance(tick.god_object, tick.hip));
+}
+
+double Judge::merged_descent_at(std::uint32_t corner, const Tick& tick) const {
   const double depth = distance(tick.god_object, tick.hip);
-  if (tick.after.state == FDCG_EDGE) return descent_from(tick) - turned(specimen_.edges[tick.after.feature].length, depth);
-  const Hip t = difference(tick.hip, specimen_.corners[tick.after.feature].point);
+  const Hip t = difference(tick.hip, specimen_.corners[corner].point);
   const fdcg_graph& graph = specimen_.graph();
-  std::vector<std::uint32_t> fan(fdcg_get_fan(&graph, tick.after.feature, nullptr, 0));
-  fdcg_get_fan(&graph, tick.after.feature, fan.data(), static_cast<std::uint32_t>(fan.size()));
+  std::vector<std::uint32_t> fan(fdcg_get_fan(&graph, corner, nullptr, 0));
+  fdcg_get_fan(&graph, corner, fan.data(), static_cast<std::uint32_t>(fan.size()));
   const auto direction_of = [&](std::uint32_t entry) {
     const Hip& d = specimen_.edges[entry >> 1].direction;
     return (entry & 1) == 0 ? d : Hip{-d[0], -d[1], -d[2]};
