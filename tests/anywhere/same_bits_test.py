@@ -6,7 +6,7 @@ import re
 import shutil
 import unittest
 
-from anywhere import C, ROOT, RUNTIME, AnywhereCase, qemu
+from anywhere import ALL, C, ROOT, RUNTIME, AnywhereCase, qemu
 
 STEP_HASH = os.environ["FDCG_STEP_HASH"]  # linked with the library that ships
 ARRAYS = os.environ["FDCG_HASH_ARRAYS"]  # graphs.c, compiled for this machine
@@ -141,7 +141,7 @@ class CortexM(HashCase):
 
     def hashed_on(self, processor, toolchain, *options, flags=(), link=("-Wl,--gc-sections",)):
         self.need("arm-none-eabi-gcc", "arm-none-eabi-g++", "qemu-system-arm", "ninja")
-        library = self.cross_runtime(toolchain, *options)
+        library = self.cross_runtime(toolchain, *options, of=ALL)
         program = self.firmware(processor, library, SOURCE, os.path.join(GRAPHS, "graphs.c"), flags=["-DFDCG_ON_BOARD", "-I", GRAPHS, *flags],
                                 link=link)
         return self.run_program(*qemu(processor), program).stdout.decode()

@@ -9,7 +9,7 @@ import re
 import subprocess
 import unittest
 
-from anywhere import C, ONE_EFFECT, ONE_GRAPH, ONE_SPHERE, OPENING, ROOT, RUNTIME, AnywhereCase, qemu
+from anywhere import ALL, C, ONE_EFFECT, ONE_GRAPH, ONE_SPHERE, OPENING, ROOT, RUNTIME, AnywhereCase, qemu
 
 PARTS = ROOT / "tests" / "consumer" / "parts"
 
@@ -36,7 +36,7 @@ COMPILER_CALLS = {"memcpy", "memset", "memmove", "memcmp"}
 # the C library's square root, and what GCC calls where the processor has no instruction (64-bit integers, doubles)
 ARM_CALLS = r"sqrtf?|__aeabi_\w+|__[a-z]+[ds]i\d"
 
-CORE = {source.stem for source in (RUNTIME / "src").rglob("*.cpp")} - SUPPORT
+CORE = ALL - SUPPORT
 
 
 class WeightCase(AnywhereCase):
@@ -59,7 +59,7 @@ class WeightCase(AnywhereCase):
         self.assertGreater(sizes["servo_step"], 1000)
         self.assertLessEqual(core, limit, f"{what}: {sizes}")
 
-    def library(self, name, *options, of=None):
+    def library(self, name, *options, of=ALL):
         return self.build_runtime(self.path(name), "-DCMAKE_BUILD_TYPE=Release", *options, of=of)
 
 
@@ -230,7 +230,7 @@ class PartsOnCortexM7(PartsCase):
         of = {"f32": ONE_GRAPH | ONE_SPHERE | ONE_EFFECT}  # of the others a scene is linked too
         for program, name, options, bar, limit in (*((name, "f32", self.M7_GRAPHS[0][2], bar, bar) for name, bar in self.M7.items()), *self.M7_GRAPHS):
             if name not in built:
-                built[name] = self.cross_runtime("cortex-m7", *options, name=name, of=of.get(name))
+                built[name] = self.cross_runtime("cortex-m7", *options, name=name, of=of.get(name, ALL))
             for link in ((), ("-Wl,--gc-sections",)):
                 text = self.on_m7(program, built[name], folder, *link)
                 if link or program != "one_scene":  # a scene's objects hold more than one asks for
@@ -239,7 +239,7 @@ class PartsOnCortexM7(PartsCase):
     def test_cortex_m7_link_time_optimisation(self):
         self.need("arm-none-eabi-g++", "arm-none-eabi-size", "qemu-system-arm")
         folder = self.embedded()
-        library = self.cross_runtime("cortex-m7", *self.F32, *self.LEAST, *LTO, name="lto")
+        library = self.cross_runtime("cortex-m7", *self.F32, *self.LEAST, *LTO, name="lto", of=ALL)
         for name, bar, limit in self.M7_LTO:
             program = self.firmware("cortex-m7", library, *self.sources(name), flags=["-flto", "-I", folder],
                                     link=["-Os", "-flto", "-Wl,--gc-sections"])
@@ -282,7 +282,7 @@ class Symbols(WeightCase):
     def test_on_a_board_only_the_compilers_own_calls_are_left(self):
         self.need("arm-none-eabi-g++", "arm-none-eabi-nm")
         for toolchain in ("cortex-m7", "cortex-m4f"):
-            lacking = self.lacking("arm-none-eabi-nm", self.cross_runtime(toolchain))
+            lacking = self.lacking("arm-none-eabi-nm", self.cross_runtime(toolchain, of=ALL))
             self.assertEqual(set(), {name for name in lacking - COMPILER_CALLS if not re.fullmatch(ARM_CALLS, name)})
 
     def test_without_files_the_library_asks_nothing_of_the_system(self):
@@ -419,7 +419,7 @@ int main(int argc, char** argv) {
 """
 
     def test_a_finger_has_a_material_without_terms_too(self):
-        library = self.library("no-terms", "-DFDCG_WITH_FRICTION_TERMS=OFF", of=None)
+        library = self.library("no-terms", "-DFDCG_WITH_FRICTION_TERMS=OFF", of=ALL)
         program, graph = self.path("finger-program"), self.path("finger.fdcg")
         self.run_program("cc", "-std=c11", "-I", str(RUNTIME / "include"), self.write("finger.c", self.FINGER), library, "-lm", "-o", program)
         self.fdcg("compile", str(ROOT / "testdata" / "meshes" / "good" / "cube_quads.off"), "-q", "-o", graph)
