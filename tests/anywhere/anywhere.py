@@ -27,6 +27,7 @@ def qemu(processor, *options):
             "-chardev", "stdio,id=out", "-semihosting-config", "enable=on,chardev=out", *options, "-kernel"]
 
 
+# The library's objects are named after its sources.
 ALL = {source.stem for source in (RUNTIME / "src").rglob("*.cpp")}
 # Of the library's objects, all that a program with one sphere may link, and all that one may link that steps one graph.
 ONE_SPHERE = {"admit", "surface", "surface_sphere", "surface_step", "params", "params_init", "friction_terms", "message", "version"}
@@ -96,6 +97,7 @@ class AnywhereCase(Case):
         return library
 
     def cross_runtime(self, toolchain, *options, name="", of=None):
+        """The same by a toolchain file; with `of` for boards of Arm alone."""
         return self.build_runtime(self.path(f"runtime-{toolchain}-{name}"), f"--toolchain={TOOLCHAINS / (toolchain + '.cmake')}", *options,
                                   of=of, ar="arm-none-eabi-gcc-ar")
 
