@@ -285,6 +285,16 @@ struct GraphView : Geometry {
     __asm__ volatile("");
   }
 
+  // The same around each neighbour, but for one around which it has been done: `from`, or FDCG_NONE. They are read for it, so
+  // they should have been prefetched some time before.
+  FDCG_HOT void prefetch_around_neighbours_of(uint32_t n, uint32_t from) const {
+    const NodeRef<Geometry> here = node(n);
+    for (uint32_t k = 0; k < kPrefetchedSides; ++k) {
+      const uint32_t across = here.across(k);
+      if (across != from && across != FDCG_NONE) prefetch_neighbours_of(across);
+    }
+  }
+
   // Whether its data may be out of a processor's last cache.
   [[nodiscard]] bool is_large() const {
     constexpr uint64_t kLarge = 64'000'000;  // bytes

@@ -52,8 +52,7 @@ inline constexpr uint32_t kMostNear = 8;
 struct NearNodes {
   uint64_t of_node;  // 0: no field is kept
   uint32_t node[kMostNear];
-  uint32_t prefetched;  // the face around which ticks that slide on it prefetch; no contact on a face has a clear ball
-  uint32_t parts;       // ... how much of it is done
+  uint32_t prefetched;  // the face around whose neighbours all has been prefetched; no contact on a face has a clear ball
 };
 
 struct ContactInternals {

@@ -58,15 +58,15 @@ template <class Geometry, class Real = typename Geometry::Real>
   return true;
 }
 
-// Prefetches what a second crossing of this tick would read, before it is sure that there is a first.
+// Prefetches what a second crossing of this tick would read, before it is sure that there is a first; unless it `has_been`.
 template <class Geometry, class Real = typename Geometry::Real>
 FDCG_HOT void prefetch_ahead(const GraphView<Geometry>& graph, NodeRef<Geometry> node, const FaceGlance<Real>& glance,
-                             Hop<Real>* hop) {
+                             bool has_been, Hop<Real>* hop) {
   hop->prefetched = FDCG_NONE;
   if (glance.kind != FaceMoveKind::nears || !graph.is_plain()) return;
   const uint32_t across = node.side(glance.near_side).across;
   if (across == FDCG_NONE) return;
-  graph.prefetch_neighbours_of(across);
+  if (!has_been) graph.prefetch_neighbours_of(across);
   hop->prefetched = across;
 }
 

@@ -325,6 +325,29 @@ inline bool hops_off_edge(const GraphView<Geometry>& graph, const Vec3<Real>& hi
   return false;
 }
 
+// In a graph that may be out of the caches, what a second crossing of a tick would read is prefetched before that tick: all
+// around the neighbours of the face that the god-object is on. A tick that came over one edge does so for the new face: its
+// neighbours, which name those faces, are at hand already, since the old face's neighbours had the same done. After other ticks
+// the first one does that slides. It changes no result.
+template <class Geometry>
+FDCG_HOT bool is_prefetched_around(const GraphView<Geometry>& graph, const fdcg_contact& contact) {
+  return graph.is_large() && internals_of(contact).near.prefetched == contact.feature;
+}
+// `from`: the face that it came from, or FDCG_NONE.
+template <class Geometry>
+[[gnu::noinline]] void prefetch_around(const GraphView<Geometry>& graph, uint32_t from, fdcg_contact* contact) {
+  NearNodes& near = internals_of(*contact).near;
+  near.of_node = 0;  // a field that shading kept is made anew
+  near.prefetched = contact->feature;
+  if (graph.is_plain()) graph.prefetch_around_neighbours_of(contact->feature, from);
+}
+// After a tick that began on face `from`.
+template <class Geometry>
+FDCG_HOT void prefetch_after(const GraphView<Geometry>& graph, uint32_t from, uint32_t transitions, fdcg_contact* contact) {
+  if (!graph.is_large() || transitions != 2 || contact->state != FDCG_FACE) return;
+  if (internals_of(*contact).near.prefetched == from) prefetch_around(graph, from, contact);
+}
+
 // The rest of a tick: from a face that the god-object may leave, or on which it must be asked again, with what has been found
 // there; from an edge that a face, `pulling`, pulls it off; or, `tick` null and no such face, from elsewhere.
 template <class Geometry, class Real = typename Geometry::Real>
@@ -342,7 +365,7 @@ FDCG_OUTLINED void step_on(const fdcg_graph& raw, const fdcg_params& params, con
   if (has_move) {
     const NodeRef<Geometry> node = graph.node(contact->feature);
     if constexpr (kGlances) {
-      if constexpr (kHasHops<Geometry>) prefetch_ahead(graph, node, tick->glance, &hop);
+      if constexpr (kHasHops<Geometry>) prefetch_ahead(graph, node, tick->glance, is_prefetched_around(graph, *contact), &hop);
       hop.friction.is_slipping = tick->is_slipping;
       hop.move = meet_side(node, hop.god_object, tick->glance);
     } else {
@@ -388,36 +411,6 @@ inline void step_by_rules(const fdcg_graph& raw, const fdcg_params& params, cons
   walk_to_hip<Geometry, Real>(walk, nullptr, 0, params, contact, result);
 }
 
-// A tick that slides on its face has time to prefetch what is beyond the neighbours, in a graph that may be out of the caches:
-// first all around the face, then around each of the first three neighbours, a part a tick. A hand that then goes over two
-// edges at once finds it at hand. It changes no result.
-inline constexpr uint32_t kPrefetchedParts = 4;
-template <class Geometry>
-FDCG_HOT bool has_more_to_prefetch(const GraphView<Geometry>& graph, const fdcg_contact& contact) {
-  const NearNodes& near = internals_of(contact).near;
-  return graph.is_large() && (near.prefetched != contact.feature || near.parts < kPrefetchedParts);
-}
-// After a tick that has changed its feature: one that came over an edge has prefetched around the face that it came to.
-template <class Geometry>
-FDCG_HOT void note_prefetched(const GraphView<Geometry>& graph, uint32_t transitions, fdcg_contact* contact) {
-  NearNodes& near = internals_of(*contact).near;
-  if (!graph.is_large() || contact->state != FDCG_FACE || transitions < 2 || near.of_node != 0) return;
-  near.prefetched = contact->feature;
-  near.parts = 1;
-}
-template <class Geometry>
-[[gnu::noinline]] void prefetch_more(const GraphView<Geometry>& graph, fdcg_contact* contact) {
-  NearNodes& near = internals_of(*contact).near;
-  if (near.of_node != 0 || near.prefetched != contact->feature) {  // a field that shading kept is made anew
-    near = {};
-    near.prefetched = contact->feature;
-  }
-  const uint32_t part = near.parts++;
-  if (!graph.is_plain()) return;
-  const uint32_t centre = part == 0 ? contact->feature : graph.node(contact->feature).across(part - 1);
-  if (centre != FDCG_NONE) graph.prefetch_neighbours_of(centre);
-}
-
 // A god-object that stays on its face, at rest or sliding, is what a servo loop meets most (contact-model TICK-7): what such a
 // tick does not need is made in step_on().
 template <class Geometry, class Real = typename Geometry::Real>
@@ -452,14 +445,15 @@ void step(const fdcg_graph& raw, const fdcg_params& params, fdcg_contact* contac
         if (slides) leave_seat(contact);
         end_at(header, params, hip, tick.glance.target, tick.is_slipping, contact, result);
         if constexpr (kHasHops<Geometry>) {
-          if (slides && has_more_to_prefetch(graph, *contact)) prefetch_more(graph, contact);
+          if (slides && graph.is_large() && !is_prefetched_around(graph, *contact)) prefetch_around(graph, FDCG_NONE, contact);
         }
       } else {
         // Of its own, so that the way above keeps nothing in memory.
         const FaceTick<Real> found = {
             tick.side, tick.is_slipping, {tick.glance.kind, tick.glance.near_side, by_parts(tick.glance.target)}};
+        const uint32_t from = contact->feature;
         step_on<Geometry, Real>(raw, params, hip, &found, FDCG_NONE, contact, result);
-        if constexpr (kHasHops<Geometry>) note_prefetched(graph, result->transitions, contact);
+        if constexpr (kHasHops<Geometry>) prefetch_after(graph, from, result->transitions, contact);
       }
     } else {
       const Vec3<Real> at = by_parts(hip);  // as above
