@@ -33,7 +33,7 @@ inline Real own_plane_rounding(const Plane& plane, Vec3<Real> x) {
 template <class Real>
 inline constexpr Real kCornersShare = Real(1) / 8;
 
-// FACE-5, FACE-6: a place so near to a plane is on it, where both were computed: the plane's offset may have cancelled
+// FACE-5: a place so near to a plane is on it, where both were computed: the plane's offset may have cancelled
 // to 0, and then is good to a unit of the extent's last place, not of its own.
 template <class Real>
 FDCG_ONE_COPY Real on_plane_rounding(const Vec3<Real>& x, Real extent) {
@@ -78,6 +78,8 @@ inline Real end_rounding(Real extent) {
 }
 
 // TICK-5: a god-object that goes in a circle this near to a corner is on it; two merged faces may lie off it, on either side.
+// FACE-5, FACE-6: sides of a face are in one line if their corners are so near to it; those of a merged face lie off it within
+// its plane as they lie off that plane.
 template <class Real>
 inline Real corner_rounding(Real extent, Real deviation) {
   return end_rounding(extent) + 4 * deviation;

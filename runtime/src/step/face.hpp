@@ -34,7 +34,7 @@ template <class Geometry, class Real = typename Geometry::Real>
 [[gnu::noinline]] Crossing<Real> first_crossing_from(uint32_t k, NodeRef<Geometry> node, const Vec3<Real>& from,
                                                      const Vec3<Real>& to) {
   const Real rounding = FDCG_MUTANT("ends-on-plane") ? Real(0) : on_plane_rounding(to, node.extent());
-  const Real along = node.is_inexact() ? rounding + Real(node.graph().max_deviation()) : rounding;
+  const Real along = node.is_inexact() ? corner_rounding(node.extent(), Real(node.graph().max_deviation())) : rounding;
   Crossing<Real> first = {FDCG_NONE, 2};  // later than any
   for (; k < node.side_count(); ++k) {
     const auto& plane = node.voronoi_plane(k);
@@ -171,7 +171,7 @@ FDCG_HOT bool goes_onto_side(const Vec3<Real>& hip, NodeRef<Geometry> node, uint
 template <class Geometry, class Real = typename Geometry::Real>
 [[gnu::noinline, gnu::cold]] void place_on_rim(Walk<Geometry>& walk, NodeRef<Geometry> node, uint32_t side,
                                                const Vec3<Real>& point) {
-  const Real in_line = on_plane_rounding(point, node.extent());
+  const Real in_line = corner_rounding(node.extent(), Real(walk.graph.max_deviation()));
   const auto& plane = node.voronoi_plane(side);
   EdgeLine<Real> line(walk.graph, node, side);
   Real u = line.parameter(point);
