@@ -166,8 +166,8 @@ FDCG_HOT bool goes_onto_side(const Vec3<Real>& hip, NodeRef<Geometry> node, uint
 }
 
 // contact-model FACE-6: seats the god-object on the rim at `point`, which the plane of this side holds. Sides in one line have
-// one plane but for rounding: beyond the end of one the point is on the next. Where the next one turns away, however little, it
-// is at the corner.
+// one plane but for rounding, and for the deviation of merged faces: beyond the end of one the point is on the next. Where the
+// next one turns away by more, it is at the corner.
 template <class Geometry, class Real = typename Geometry::Real>
 [[gnu::noinline, gnu::cold]] void place_on_rim(Walk<Geometry>& walk, NodeRef<Geometry> node, uint32_t side,
                                                const Vec3<Real>& point) {

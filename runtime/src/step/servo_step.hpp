@@ -330,12 +330,12 @@ inline bool hops_off_edge(const GraphView<Geometry>& graph, const Vec3<Real>& hi
 // neighbours, which name those faces, are at hand already, since the old face's neighbours had the same done. After other ticks
 // the first one does that slides. It changes no result.
 template <class Geometry>
-FDCG_HOT bool is_prefetched_around(const GraphView<Geometry>& graph, const fdcg_contact& contact) {
+FDCG_HOT bool is_prefetched_beyond(const GraphView<Geometry>& graph, const fdcg_contact& contact) {
   return graph.is_large() && internals_of(contact).near.prefetched == contact.feature;
 }
 // `from`: the face that it came from, or FDCG_NONE.
 template <class Geometry>
-[[gnu::noinline]] void prefetch_around(const GraphView<Geometry>& graph, uint32_t from, fdcg_contact* contact) {
+[[gnu::noinline]] void prefetch_beyond(const GraphView<Geometry>& graph, uint32_t from, fdcg_contact* contact) {
   NearNodes& near = internals_of(*contact).near;
   near.of_node = 0;  // a field that shading kept is made anew
   near.prefetched = contact->feature;
@@ -345,7 +345,7 @@ template <class Geometry>
 template <class Geometry>
 FDCG_HOT void prefetch_after(const GraphView<Geometry>& graph, uint32_t from, uint32_t transitions, fdcg_contact* contact) {
   if (!graph.is_large() || transitions != 2 || contact->state != FDCG_FACE) return;
-  if (internals_of(*contact).near.prefetched == from) prefetch_around(graph, from, contact);
+  if (internals_of(*contact).near.prefetched == from) prefetch_beyond(graph, from, contact);
 }
 
 // The rest of a tick: from a face that the god-object may leave, or on which it must be asked again, with what has been found
@@ -365,7 +365,7 @@ FDCG_OUTLINED void step_on(const fdcg_graph& raw, const fdcg_params& params, con
   if (has_move) {
     const NodeRef<Geometry> node = graph.node(contact->feature);
     if constexpr (kGlances) {
-      if constexpr (kHasHops<Geometry>) prefetch_ahead(graph, node, tick->glance, is_prefetched_around(graph, *contact), &hop);
+      if constexpr (kHasHops<Geometry>) prefetch_ahead(graph, node, tick->glance, is_prefetched_beyond(graph, *contact), &hop);
       hop.friction.is_slipping = tick->is_slipping;
       hop.move = meet_side(node, hop.god_object, tick->glance);
     } else {
@@ -445,7 +445,7 @@ void step(const fdcg_graph& raw, const fdcg_params& params, fdcg_contact* contac
         if (slides) leave_seat(contact);
         end_at(header, params, hip, tick.glance.target, tick.is_slipping, contact, result);
         if constexpr (kHasHops<Geometry>) {
-          if (slides && graph.is_large() && !is_prefetched_around(graph, *contact)) prefetch_around(graph, FDCG_NONE, contact);
+          if (slides && graph.is_large() && !is_prefetched_beyond(graph, *contact)) prefetch_beyond(graph, FDCG_NONE, contact);
         }
       } else {
         // Of its own, so that the way above keeps nothing in memory.
