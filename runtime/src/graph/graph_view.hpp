@@ -379,7 +379,7 @@ FDCG_HOT Real side_of(const GraphView<Geometry>& graph, NodeRef<Geometry> node, 
                       uint32_t* work_left) {
   const Real distance = distance_from(node, x);
   if (absolute(distance) > bound || node.is_inexact()) return distance;
-  const int sign = exact_side_sign(graph, node, x, work_left);
+  const int sign = exact_side_sign(graph, node, by_parts(x), work_left);
   if (sign == 0) return 0;
   if (sign > 0) return distance > 0 ? distance : RealLimits<Real>::kSignOnly;
   return distance < 0 ? distance : -RealLimits<Real>::kSignOnly;
