@@ -161,7 +161,7 @@ FDCG_HOT bool goes_onto_side(const Vec3<Real>& hip, NodeRef<Geometry> node, uint
     const Real beyond = (kIsPlain ? node.stored_plane(k) : node.voronoi_plane(k)).distance(on);
     if (!(beyond < -end_rounding(node.extent()))) return false;
   }
-  *place = on;
+  *place = by_parts(on);
   return true;
 }
 

@@ -127,7 +127,8 @@ template <class Geometry, class Real = typename Geometry::Real>
   for (;; has_move = false) {
     if (!has_move) {
       const Vec3<Real> gap = hop->god_object - hip;
-      hop->move = move_on_face<true>(graph.node(hop->node), hop->friction, hip, bound, hop->side, hop->god_object, gap);
+      hop->move =
+          move_on_face<true>(graph.node(hop->node), hop->friction, hip, bound, hop->side, by_parts(hop->god_object), gap);
     }
     if (hop->move.kind != Kind::crosses || hop->work_left <= kHopWork) return;
     if (!hop_over(graph, hip, bound, hop) || hop->is_on_edge) return;
