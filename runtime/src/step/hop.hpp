@@ -100,11 +100,15 @@ FDCG_HOT bool hop_over(const GraphView<Geometry>& graph, const Vec3<Real>& hip, 
   if (!FDCG_WITH_FAST_EDGES && !goes_over) return false;
   if (!goes_over) graph.prefetch_edge(here, k);
   Vec3<Real> god_object = where_it_crosses(hop->god_object, hop->move);
-  if (!goes_onto_side<true>(hip, here, k, &god_object) && !goes_onto_edge(graph, here, k, &god_object)) return false;
+  if (!goes_onto_side<true>(hip, here, k, &god_object)) {
+    Vec3<Real> on_edge = by_parts(god_object);  // of its own, so that the place above stays in registers
+    if (!goes_onto_edge(graph, here, k, &on_edge)) return false;
+    god_object = by_parts(on_edge);
+  }
   const Vec3<Real> gap = god_object - hip;
   const Real gap2 = dot(gap, gap);
   if (!(gap2 < hop->gap2)) return false;
-  if (!goes_over) return FDCG_WITH_FAST_EDGES && stops_on_edge(graph, hip, crossed.link >> 1, god_object, hop);
+  if (!goes_over) return FDCG_WITH_FAST_EDGES && stops_on_edge(graph, hip, crossed.link >> 1, by_parts(god_object), hop);
   hop->god_object = by_parts(FDCG_MUTANT("hop-stays") ? hop->god_object : god_object);
   hop->gap2 = gap2;
   hop->node = FDCG_MUTANT("hop-keeps-face") ? hop->node : crossed.across;
