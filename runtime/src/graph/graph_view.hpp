@@ -365,7 +365,8 @@ template <class Geometry, class Real = typename Geometry::Real>
                                       uint32_t* work_left) {
   Vec3<Real> corner[3];
   for (uint32_t k = 0; k < 3; ++k) {
-    const Vec3<Real> v = corner[k] = graph.corner_point(node.spanning_corner(k));
+    const Vec3<Real> v = graph.corner_point(node.spanning_corner(k));
+    corner[k] = by_parts(v);
     if (v.x == x.x && v.y == x.y && v.z == x.z) return 0;  // at an apex of 10^4 faces worth 10^4 exact signs
   }
   return orient3d_sign(corner[0], corner[1], corner[2], x, work_left);
