@@ -164,7 +164,7 @@ template <class Geometry, class Real = typename Geometry::Real>
     walk.place(hop.god_object, {FDCG_EDGE, hop.edge});
     walk.active = hop.is_on_edge ? walk.seat : Feature{FDCG_FACE, hop.node};
   }
-  *move = hop.move;
+  *move = {hop.move.kind, by_parts(hop.move.target), hop.move.crossing};
   return true;
 }
 
