@@ -112,8 +112,8 @@ class PartsCase(WeightCase):
                   ("one_graph", "both-ordinary", (*NO_WORDS, *ORDINARY), 96 * KB, 92_500),
                   ("one_graph", "f64-lean", (*F64, *LEAN), 64 * KB, 64 * KB),
                   ("one_graph", "both-lean", (*NO_WORDS, *LEAN), 96 * KB, 118_300),
-                  ("one_graph", "f64", (*F64, *FACETS), 64 * KB, 70_000),
-                  ("one_graph", "both", (*NO_WORDS, *FACETS), 96 * KB, 126_200),
+                  ("one_graph", "f64", (*F64, *FACETS), 64 * KB, 70_100),
+                  ("one_graph", "both", (*NO_WORDS, *FACETS), 96 * KB, 126_400),
                   ("one_graph", "f64-shaded", F64, 64 * KB, 94_000), ("one_graph", "both-shaded", NO_WORDS, 96 * KB, 167_000))
     M7_GRAPHS = (("one_graph", "f32", (*F32, "-DFDCG_WITH_FRICTION_TERMS=OFF"), 22 * KB, 38_900),
                  ("one_graph", "f32-plain", (*F32, *PLAIN), 22 * KB, 26_300),
