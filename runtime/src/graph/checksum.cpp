@@ -106,13 +106,22 @@ uint64_t block_sum(const unsigned char* data, uint64_t bytes) {
 
 #if FDCG_MAY_HAVE_AVX2
 
-// Two whole blocks at once, with vectors of four words: the lanes of one block alone would wait for their products.
-[[gnu::target("avx2")]] inline __m256i four_spread(__m256i lanes, uint32_t factor) {
+// With vectors of four words.
+[[gnu::target("avx2"), gnu::always_inline]] inline __m256i four_spread(__m256i lanes, uint32_t factor) {
   return _mm256_add_epi64(lanes, _mm256_mul_epu32(lanes, _mm256_set1_epi64x(factor - 1)));
 }
+[[gnu::target("avx2"), gnu::always_inline]] inline __m256i four_absorbed(__m256i lanes, __m256i words) {
+  const __m256i once = four_spread(_mm256_xor_si256(lanes, words), kFactor);
+  return four_spread(_mm256_shuffle_epi32(once, 0xB1), kOther);
+}
+[[gnu::target("avx2"), gnu::always_inline]] inline __m256i four_at(const void* words) {
+  return _mm256_loadu_si256(static_cast<const __m256i*>(words));
+}
 
-[[gnu::target("avx2"), gnu::noinline]] void two_block_sums(const unsigned char* data, uint64_t (&sums)[2]) {
-  constexpr int kFours = kLaneCount / 4;
+constexpr int kFours = kLaneCount / 4;
+
+// The lanes of two whole blocks at once: those of one block alone would wait for their products.
+[[gnu::target("avx2"), gnu::noinline]] void sum_two_blocks(const unsigned char* data, uint64_t (*lanes)[kLaneCount]) {
   uint64_t start[kLaneCount];
   BlockLanes().store(start);
   __m256i four[2][kFours];
@@ -126,23 +135,61 @@ uint64_t block_sum(const unsigned char* data, uint64_t bytes) {
 #pragma GCC unroll 2
     for (int block = 0; block < 2; ++block) {
 #pragma GCC unroll 4
-      for (int i = 0; i < kFours; ++i) {
-        const __m256i words = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(stripes[block] + 32 * i));
-        const __m256i once = four_spread(_mm256_xor_si256(four[block][i], words), kFactor);
-        four[block][i] = four_spread(_mm256_shuffle_epi32(once, 0xB1), kOther);
-      }
+      for (int i = 0; i < kFours; ++i)
+        four[block][i] = four_absorbed(four[block][i], four_at(stripes[block] + 32 * i));
     }
   }
-  // Folded together: each is one chain of products.
-  uint64_t lanes[2][kLaneCount];
-  memcpy(lanes, four, sizeof lanes);
-  uint64_t first = kSeed ^ kChecksumBlock, second = first;
-  for (int i = 0; i < kLaneCount; ++i) {
-    first = absorbed(first, lanes[0][i]);
-    second = absorbed(second, lanes[1][i]);
+#pragma GCC unroll 2
+  for (int block = 0; block < 2; ++block) {
+#pragma GCC unroll 4
+    for (int i = 0; i < kFours; ++i)
+      _mm256_storeu_si256(reinterpret_cast<__m256i*>(lanes[block] + 4 * i), four[block][i]);
   }
-  sums[0] = first;
-  sums[1] = second;
+}
+
+// Blocks that are folded together: the fold of one is a chain of products, each of which waits for the one before.
+constexpr int kFolded = 8;
+
+// The sums of kFolded whole blocks from their lanes.
+[[gnu::target("avx2"), gnu::noinline]] void fold_blocks(const uint64_t (&lanes)[kFolded][kLaneCount],
+                                                        uint64_t (&sums)[kFolded]) {
+  constexpr int kVectors = kFolded / 4;
+  __m256i sum[kVectors];
+#pragma GCC unroll 8
+  for (int v = 0; v < kVectors; ++v)
+    sum[v] = _mm256_set1_epi64x(kSeed ^ kChecksumBlock);
+  for (int i = 0; i < kLaneCount; i += 4) {
+#pragma GCC unroll 8
+    for (int v = 0; v < kVectors; ++v) {
+      const uint64_t(*const block)[kLaneCount] = lanes + 4 * v;
+      // Four lanes of four blocks, to a vector for each lane.
+      const __m256i a = four_at(block[0] + i), b = four_at(block[1] + i), c = four_at(block[2] + i), d = four_at(block[3] + i);
+      const __m256i ab0 = _mm256_unpacklo_epi64(a, b), ab1 = _mm256_unpackhi_epi64(a, b);
+      const __m256i cd0 = _mm256_unpacklo_epi64(c, d), cd1 = _mm256_unpackhi_epi64(c, d);
+      sum[v] = four_absorbed(sum[v], _mm256_permute2x128_si256(ab0, cd0, 0x20));
+      sum[v] = four_absorbed(sum[v], _mm256_permute2x128_si256(ab1, cd1, 0x20));
+      sum[v] = four_absorbed(sum[v], _mm256_permute2x128_si256(ab0, cd0, 0x31));
+      sum[v] = four_absorbed(sum[v], _mm256_permute2x128_si256(ab1, cd1, 0x31));
+    }
+  }
+#pragma GCC unroll 8
+  for (int v = 0; v < kVectors; ++v)
+    _mm256_storeu_si256(reinterpret_cast<__m256i*>(sums + 4 * v), sum[v]);
+}
+
+// Of whole blocks; of an even number of them.
+[[gnu::target("avx2"), gnu::noinline]] uint64_t checksum_of_pairs(const unsigned char* data, uint64_t first, uint64_t end) {
+  uint64_t sum = 0;
+  uint64_t lanes[kFolded][kLaneCount] = {}, sums[kFolded];
+  for (uint64_t i = first; i < end; i += kFolded) {
+    const uint64_t count = end - i < kFolded ? end - i : kFolded;
+    for (uint64_t k = 0; k < count; k += 2)
+      sum_two_blocks(data + (i + k) * kChecksumBlock, lanes + k);
+    fold_blocks(lanes, sums);
+    for (uint64_t k = 0; k < count; ++k)
+      sum += mixed_in(sums[k], i + k);
+  }
+  return sum;
 }
 
 #endif
@@ -153,11 +200,10 @@ uint64_t checksum_of_blocks(const unsigned char* data, uint64_t bytes, uint64_t 
   uint64_t sum = 0, i = first;
 #if FDCG_MAY_HAVE_AVX2
   if (__builtin_cpu_supports("avx2")) {
-    for (; i + 1 < end && (i + 2) * kChecksumBlock <= bytes; i += 2) {
-      uint64_t sums[2];
-      two_block_sums(data + i * kChecksumBlock, sums);
-      sum += mixed_in(sums[0], i) + mixed_in(sums[1], i + 1);
-    }
+    const uint64_t whole = bytes / kChecksumBlock, last = end < whole ? end : whole;
+    const uint64_t end_of_pairs = i < last ? i + (last - i) / 2 * 2 : i;
+    sum += checksum_of_pairs(data, i, end_of_pairs);
+    i = end_of_pairs;
   }
 #endif
   for (; i < end; ++i) {
