@@ -75,12 +75,12 @@ class SafeChunk {
   [[gnu::noinline]] void checksums() {
     const fdcg_section* const sections = section_table(header_);
     const auto* const file = reinterpret_cast<const unsigned char*>(&header_);
+    BlockRange ranges[FDCG_MOST_SECTIONS];
     for (uint32_t i = 0; i < header_.section_count; ++i) {
       const uint64_t bytes = section_bytes(header_, i), blocks = checksum_blocks(bytes);
-      const uint64_t pairs = blocks / 2 + blocks % 2;  // two blocks at once are summed in less time than one and one
-      const uint64_t first = 2 * chunk_.first_of(pairs), end = 2 * chunk_.end_of(pairs);
-      part_->sums[i] += checksum_of_blocks(file + sections[i].offset, bytes, first, end < blocks ? end : blocks);
+      ranges[i] = {file + sections[i].offset, bytes, chunk_.first_of(blocks), chunk_.end_of(blocks), &part_->sums[i]};
     }
+    add_checksums(ranges, header_.section_count);
   }
 
   template <class Look>
