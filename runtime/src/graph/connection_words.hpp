@@ -48,9 +48,16 @@ struct ConnectionWords {
   uint64_t types[4];  // how many are of each; right where no type is larger than 3
 };
 
+// From sums of types, of their upper bits, and of both bits.
+inline ConnectionWords connection_words(uint64_t any, uint64_t pairs, uint64_t types, uint64_t uppers, uint64_t boundaries,
+                                        uint64_t count) {
+  const uint64_t of3 = boundaries, of2 = uppers - of3, of1 = types - 2 * of2 - 3 * of3;
+  return {any, pairs, {count - of1 - of2 - of3, of1, of2, of3}};
+}
+
 // Prefetches as many that follow.
 inline ConnectionWords look_at_words(const fdcg_connection* connections, uint64_t count) {
-  // Sums of types, of their upper bits, and of both bits: zeros add nothing.
+  // Zeros add nothing.
   Words any = {}, pairs = {}, types = {}, uppers = {}, boundaries = {};
   const auto look_at = [&](Words words) {
     const Words pair = words & words >> 1, type = words >> kTypeAt & 3;
@@ -73,8 +80,7 @@ inline ConnectionWords look_at_words(const fdcg_connection* connections, uint64_
     memcpy(&words, connections + i, sizeof(fdcg_connection));
     look_at(words);
   }
-  const uint64_t of3 = sum_of(boundaries), of2 = sum_of(uppers) - of3, of1 = sum_of(types) - 2 * of2 - 3 * of3;
-  return {any_of(any), any_of(pairs), {count - of1 - of2 - of3, of1, of2, of3}};
+  return connection_words(any_of(any), any_of(pairs), sum_of(types), sum_of(uppers), sum_of(boundaries), count);
 }
 
 }  // namespace fdcg

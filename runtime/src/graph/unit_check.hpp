@@ -20,11 +20,16 @@ struct Vectors<float> {
 };
 #endif
 
+// Of a stored unit vector's squared length.
 template <class Real>
-class UnitCheck {
-  // How far a stored unit vector's squared length may lie from 1.
+struct UnitRange {
   static constexpr Real kTolerance = sizeof(Real) == 8 ? Real(1e-9) : Real(1e-4);
   static constexpr Real kLeast = 1 - kTolerance, kMost = 1 + kTolerance;
+};
+
+template <class Real>
+class UnitCheck : UnitRange<Real> {
+  using UnitRange<Real>::kLeast, UnitRange<Real>::kMost;
 
  public:
   // The fourth number is to be above `above` and at most `most`. False for NaN too.

@@ -18,6 +18,7 @@
 #include "graph/sections.hpp"
 #include "graph/unit_check.hpp"
 #include "graph/verify.hpp"
+#include "graph/wide_check.hpp"
 
 namespace fdcg {
 namespace {
@@ -101,6 +102,9 @@ class SafeChunk {
   }
 
   bool are_nodes_sound() const {
+#if FDCG_HAS_WIDE_CHECKS
+    if (uniform_sides_ == 3 && records_.has_planes() && has_avx2() && are_triangles_sound()) return true;
+#endif
     if (uniform_sides_ == 3) return records_.has_planes() ? are_sound<3, true>() : are_sound<3, false>();
     return records_.has_planes() ? are_sound<0, true>() : are_sound<0, false>();
   }
@@ -154,6 +158,40 @@ class SafeChunk {
     part_->first_sides += sides - seconds;
     return true;
   }
+
+#if FDCG_HAS_WIDE_CHECKS
+  // are_sound<3, true>() in vectors of 32 bytes. False: that one is to say what is wrong.
+  [[FDCG_AVX2, gnu::noinline]] bool are_triangles_sound() const {
+    constexpr uint32_t kBytes = node_bytes<Real>(3, true);
+    const uint64_t first = chunk_.first_of(header_.node_count), end = chunk_.end_of(header_.node_count);
+    const uint64_t ahead = (end - first) * kBytes;
+    const Limits limits = this->limits();
+    TriangleCheck sides(static_cast<uint32_t>(first), limits.connections, limits.connection_count, limits.corner_count,
+                        limits.node_count);
+    WideUnitCheck<Real> planes(-largest_offset_, largest_offset_);
+    uint32_t seconds = 0;
+    const unsigned char* block = records_.nodes() + first * kBytes;
+    for (uint64_t n = first; n < end; ++n, block += kBytes) {
+#pragma GCC unroll 3
+      for (uint32_t line = 0; line < kBytes; line += kLineBytes)
+        prefetch(block + ahead + line);
+      const auto& node = *reinterpret_cast<const Node*>(block);
+      if (node.side_count != 3 || (node.flags & ~uint32_t{FDCG_NODE_INEXACT}) != 0) return false;
+      if (__builtin_expect(!sides.look_at(node.sides), false)) {
+        for (uint32_t k = 0; k < 3; ++k) {
+          if (fault_of_side<true>(static_cast<uint32_t>(n), k, node.sides[k], limits) != nullptr) return false;
+          seconds += node.sides[k].link & 1;
+        }
+      }
+      const Real* const own = reinterpret_cast<const Real*>(block + planes_at<Real>(3));
+      planes.look_at(node.plane.normal, own, own + 4, own + 8);
+    }
+    if (!sides.holds() || !planes.holds()) return false;
+    part_->sides += static_cast<uint32_t>(3 * (end - first));
+    part_->first_sides += static_cast<uint32_t>(3 * (end - first)) - seconds - sides.seconds();
+    return true;
+  }
+#endif
 
   // Where node n's block starts in its section, which ends where one more would start. Of blocks that differ: as the file says.
   [[nodiscard]] uint64_t offset_of(uint64_t n) const {
@@ -253,6 +291,13 @@ class SafeChunk {
     return dot(along, along) < TinyEdge<Real>::kSquare ? along * TinyEdge<Real>::kScale : along;
   }
 
+  static ConnectionWords words_of(const fdcg_connection* connections, uint64_t count) {
+#if FDCG_HAS_WIDE_CHECKS
+    if (has_avx2()) return look_at_words_wide(connections, count);
+#endif
+    return look_at_words(connections, count);
+  }
+
   [[gnu::noinline]] fdcg_status connections() {
     const uint64_t first = chunk_.first_of(header_.connection_count), end = chunk_.end_of(header_.connection_count);
     const uint64_t most_sides = uniform_sides_ == 3 ? 3 : kByte + 1;
@@ -262,7 +307,7 @@ class SafeChunk {
     const uint64_t side1 = uniform_sides_ == 3 ? 1 : 0;
     const uint64_t higher = kHigher << kTypeAt | kHigher << kFlatnessAt | side1 * (kHigher << kSide1At);
     const uint64_t both = kBoth << kFlatnessAt | side1 * (kBoth << kSide1At);
-    const ConnectionWords words = look_at_words(records_.connections() + first, end - first);
+    const ConnectionWords words = words_of(records_.connections() + first, end - first);
     if (((words.any & higher) | (words.pairs & both)) != 0) {
       return for_all(first, end, "connection", error_, [&](uint32_t c, auto* faults) {
         const fdcg_connection& connection = records_.connections()[c];
@@ -278,6 +323,9 @@ class SafeChunk {
   [[gnu::noinline]] fdcg_status edges() {
     const uint64_t first = chunk_.first_of(header_.connection_count), end = chunk_.end_of(header_.connection_count);
     const auto numbers = [this](uint64_t c) { return static_cast<const Real*>(records_.edges()[c].direction); };
+#if FDCG_HAS_WIDE_CHECKS
+    if (has_avx2() && are_units(numbers(first), end - first, Real(0), largest_offset_)) return FDCG_OK;
+#endif
     UnitCheck<Real> check(0, largest_offset_);
     for (uint64_t c = first; c + 1 < end; c += 2) {
       prefetch(numbers(c + (end - first)));
@@ -292,32 +340,60 @@ class SafeChunk {
     });
   }
 
-  [[gnu::noinline]] fdcg_status corners() {
+  struct Bounds {
     double low[3], high[3];
-    for (int k = 0; k < 3; ++k) {
-      low[k] = header_.bounds_min[k] > -header_.extent ? header_.bounds_min[k] : -header_.extent;
-      high[k] = header_.bounds_max[k] < header_.extent ? header_.bounds_max[k] : header_.extent;
-    }
-    const auto fault_of = [&](uint32_t v) -> const char* {
-      const auto& corner = records_.corners()[v];
+  };
+
+  [[nodiscard]] const char* fault_of_corner(uint32_t v, const Bounds& bounds) const {
+    const auto& corner = records_.corners()[v];
 #pragma GCC unroll 3
-      for (int k = 0; k < 3; ++k) {
-        if (!(double{corner.point[k]} >= low[k]) || !(double{corner.point[k]} <= high[k])) return "outside the bounds";
-      }
+    for (int k = 0; k < 3; ++k) {
+      if (!(double{corner.point[k]} >= bounds.low[k]) || !(double{corner.point[k]} <= bounds.high[k]))
+        return "outside the bounds";
+    }
+    const uint32_t count = corner.fan & ~FDCG_CORNER_OPEN;
+    if (__builtin_expect(count == 0, false)) {
+      ++part_->busy_corners;
+      const bool is_busy = corner.first < header_.busy_count && raw_.busy_corners[corner.first].corner == v;
+      return is_busy && corner.side == 0 ? nullptr : "no busy corner of this number";
+    }
+    if (count < 2 || count > FDCG_BUSY_FAN || count > header_.largest_fan) return "fan out of range";
+    const bool is_node = corner.first < header_.node_count;
+    return is_node && corner.side < side_count_of(corner.first) ? nullptr : "fan does not start here";
+  }
+
+#if FDCG_HAS_WIDE_CHECKS
+  // All of the chunk's, of a graph of triangles.
+  [[FDCG_AVX2, gnu::noinline]] bool are_corners_sound(uint64_t first, uint64_t end, const Bounds& bounds) const {
+    const uint32_t largest_fan = header_.largest_fan < FDCG_BUSY_FAN ? header_.largest_fan : FDCG_BUSY_FAN;
+    const uint32_t nodes = header_.node_count;
+    const auto* const corners = records_.corners();
+    WidePointCheck points(bounds.low, bounds.high);
+    for (uint64_t v = first; v < end; ++v) {
+      const auto& corner = corners[v];
+      prefetch(&corner + (end - first));
+      points.look_at(corner.point);
       const uint32_t count = corner.fan & ~FDCG_CORNER_OPEN;
-      if (__builtin_expect(count == 0, false)) {
-        ++part_->busy_corners;
-        const bool is_busy = corner.first < header_.busy_count && raw_.busy_corners[corner.first].corner == v;
-        return is_busy && corner.side == 0 ? nullptr : "no busy corner of this number";
-      }
-      if (count < 2 || count > FDCG_BUSY_FAN || count > header_.largest_fan) return "fan out of range";
-      const bool is_node = corner.first < header_.node_count;
-      return is_node && corner.side < side_count_of(corner.first) ? nullptr : "fan does not start here";
-    };
+      const bool is_usual = count >= 2 && count <= largest_fan && corner.first < nodes && corner.side < 3;
+      if (__builtin_expect(!is_usual, false) && fault_of_corner(static_cast<uint32_t>(v), bounds) != nullptr) return false;
+    }
+    return points.holds();
+  }
+#endif
+
+  [[gnu::noinline]] fdcg_status corners() {
+    Bounds bounds;
+    for (int k = 0; k < 3; ++k) {
+      bounds.low[k] = header_.bounds_min[k] > -header_.extent ? header_.bounds_min[k] : -header_.extent;
+      bounds.high[k] = header_.bounds_max[k] < header_.extent ? header_.bounds_max[k] : header_.extent;
+    }
     const uint64_t first = chunk_.first_of(header_.corner_count), end = chunk_.end_of(header_.corner_count);
+#if FDCG_HAS_WIDE_CHECKS
+    if (uniform_sides_ == 3 && has_avx2() && are_corners_sound(first, end, bounds)) return FDCG_OK;
+#endif
     for (uint64_t v = first; v < end; ++v) {
       prefetch(records_.corners() + v + (end - first));
-      if (const char* const what = fault_of(static_cast<uint32_t>(v)); what != nullptr)
+      if (const char* const what = fault_of_corner(static_cast<uint32_t>(v), bounds); what != nullptr)
         return refuse_record(error_, "corner", v, what);
     }
     return FDCG_OK;
