@@ -51,6 +51,9 @@ int main(int count, char** arguments) {
       write("inexact-f64", inexact, f64, false) && write("inexact-f32", inexact, f32, true) &&
       write("l-f64", l_prism(), f64, true) && write("l-f32-derived", l_prism(), f32, false) &&
       write("open-patch-f64", plane_grid(2, 2), f64, true) && write("open-patch-f32", plane_grid(2, 2), f32, true) &&
+      write("triangles-f64", star_sphere(1, 0.1, 1), f64, true) && write("triangles-f32", star_sphere(1, 0.1, 1), f32, true) &&
+      write("open-triangles-f64", bumpy_patch(3, 0.05, 1), f64, true) &&
+      write("open-triangles-f32", bumpy_patch(3, 0.05, 1), f32, true) &&
       write("heights-f64", with_heights(l_prism(), bake::HeightImage::Wrap::mirror), f64, true) &&
       write("heights-f32", with_heights(plane_grid(2, 2), bake::HeightImage::Wrap::repeat), f32, false) &&
       write("visual-f64", l_prism(), f64, true, true) && write("visual-f32", plane_grid(2, 2), f32, false, true);
