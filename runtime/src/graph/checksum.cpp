@@ -102,10 +102,11 @@ uint64_t block_sum(const unsigned char* data, uint64_t bytes) {
 // Blocks are summed some together, their lanes in turns: those of one block alone would wait for their products. Three take an
 // eighth less time than two, but from memory, where they are a third place to read at, more.
 struct FromMemory {
-  static constexpr int kTogether = 2, kLocality = 3;
+  [[maybe_unused]] static constexpr int kTogether = 2, kLocality = 3;
 };
 struct FromCache {
-  static constexpr int kTogether = 3, kLocality = 2;  // the nearest cache is for what is read, not for what comes
+  // The nearest cache is for what is read, not for what comes.
+  [[maybe_unused]] static constexpr int kTogether = 3, kLocality = 2;
 };
 
 #if FDCG_MAY_HAVE_AVX2

@@ -51,9 +51,9 @@ class SafeChunk : SafeRecords<Real> {
 
  private:
   using Base = SafeRecords<Real>;
-  using Base::side_count_of;
   using Base::node_section_bytes_, Base::uniform_sides_;
   using Base::records_, Base::header_, Base::raw_, Base::chunk_, Base::part_, Base::error_;
+  using Base::side_count_of;
   using typename Base::Node;
 
   [[gnu::noinline]] void checksums() {
