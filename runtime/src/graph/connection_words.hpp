@@ -48,7 +48,20 @@ struct ConnectionWords {
   uint64_t types[4];  // how many are of each; right where no type is larger than 3
 };
 
-// From sums of types, of their upper bits, and of both bits.
+// Sums of types, of their upper bits, and of both bits, in each number of `Words`: zeros add nothing.
+template <class Words>
+struct ConnectionSums {
+  Words any = {}, pairs = {}, types = {}, uppers = {}, boundaries = {};
+
+  [[gnu::always_inline]] void look_at(const Words& words) {
+    const Words pair = words & words >> 1, type = words >> kTypeAt & 3;
+    any |= words;
+    pairs |= pair;
+    types += type;
+    uppers += type >> 1;
+    boundaries += pair >> kTypeAt & 1;
+  }
+};
 inline ConnectionWords connection_words(uint64_t any, uint64_t pairs, uint64_t types, uint64_t uppers, uint64_t boundaries,
                                         uint64_t count) {
   const uint64_t of3 = boundaries, of2 = uppers - of3, of1 = types - 2 * of2 - 3 * of3;
@@ -57,30 +70,22 @@ inline ConnectionWords connection_words(uint64_t any, uint64_t pairs, uint64_t t
 
 // Prefetches as many that follow.
 inline ConnectionWords look_at_words(const fdcg_connection* connections, uint64_t count) {
-  // Zeros add nothing.
-  Words any = {}, pairs = {}, types = {}, uppers = {}, boundaries = {};
-  const auto look_at = [&](Words words) {
-    const Words pair = words & words >> 1, type = words >> kTypeAt & 3;
-    any |= words;
-    pairs |= pair;
-    types += type;
-    uppers += type >> 1;
-    boundaries += pair >> kTypeAt & 1;
-  };
+  ConnectionSums<Words> sums;
   constexpr uint64_t kPerLine = 8;  // connections in a cache line of 64 bytes
   uint64_t i = 0;
   for (; i + kWords <= count; i += kWords) {
     Words words;
     memcpy(&words, connections + i, sizeof words);
     if (i % kPerLine < kWords) prefetch(connections + i + count);
-    look_at(words);
+    sums.look_at(words);
   }
   if (i < count) {
     Words words = {};
     memcpy(&words, connections + i, sizeof(fdcg_connection));
-    look_at(words);
+    sums.look_at(words);
   }
-  return connection_words(any_of(any), any_of(pairs), sum_of(types), sum_of(uppers), sum_of(boundaries), count);
+  return connection_words(any_of(sums.any), any_of(sums.pairs), sum_of(sums.types), sum_of(sums.uppers),
+                          sum_of(sums.boundaries), count);
 }
 
 }  // namespace fdcg

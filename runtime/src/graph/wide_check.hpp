@@ -164,22 +164,18 @@ class WideWords {
   [[FDCG_WIDE]] void look_at(const void* connections) {
     Words words;
     memcpy(&words, connections, sizeof words);
-    const Words pair = words & words >> 1, type = words >> kTypeAt & 3;
-    any_ |= words;
-    pairs_ |= pair;
-    types_ += type;
-    uppers_ += type >> 1;
-    boundaries_ += pair >> kTypeAt & 1;
+    sums_.look_at(words);
   }
   [[FDCG_WIDE]] ConnectionWords result(uint64_t count) const {
-    return connection_words(any_[0] | any_[1] | any_[2] | any_[3], pairs_[0] | pairs_[1] | pairs_[2] | pairs_[3],
-                            sum_of(types_), sum_of(uppers_), sum_of(boundaries_), count);
+    return connection_words(any_of(sums_.any), any_of(sums_.pairs), sum_of(sums_.types), sum_of(sums_.uppers),
+                            sum_of(sums_.boundaries), count);
   }
 
  private:
+  [[FDCG_WIDE]] static uint64_t any_of(Words words) { return words[0] | words[1] | words[2] | words[3]; }
   [[FDCG_WIDE]] static uint64_t sum_of(Words words) { return words[0] + words[1] + words[2] + words[3]; }
 
-  Words any_ = {}, pairs_ = {}, types_ = {}, uppers_ = {}, boundaries_ = {};
+  ConnectionSums<Words> sums_;
 };
 
 [[FDCG_AVX2]] inline ConnectionWords look_at_words_wide(const fdcg_connection* connections, uint64_t count) {
