@@ -18,7 +18,7 @@ struct EdgeSides {
 template <class Geometry, class Real = typename Geometry::Real>
 [[gnu::noinline]] void look_at_sides(Walk<Geometry>& walk, ConnectionRef<Geometry> connection, EdgeSides<Real>* sides) {
   walk.spend(kEdgeWork);
-  sides->side[1] = sides->voronoi[1] = 0;
+  sides->side[1] = sides->voronoi[1] = 0;  // of a boundary, which has one face
   const int faces = connection.type() == FDCG_BOUNDARY || FDCG_MUTANT("one-sided") ? 1 : 2;
   for (int k = 0; k < faces; ++k) {
     const NodeRef<Geometry> node = walk.graph.node(connection.node(k));
