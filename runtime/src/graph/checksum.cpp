@@ -99,8 +99,8 @@ uint64_t block_sum(const unsigned char* data, uint64_t bytes) {
   return folded(lane, bytes);
 }
 
-// Blocks are summed some together, their lanes in turns: those of one block alone would wait for their products. Three take an
-// eighth less time than two, but from memory, where they are a third place to read at, more.
+// Several blocks are summed together, their lanes in turns: those of one block alone would wait for their products. Three take
+// less time than two in the cache, and more from memory, where they are a third place to read at.
 struct FromMemory {
   [[maybe_unused]] static constexpr int kTogether = 2, kLocality = 3;
 };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What verification asks most often, in vectors of 32 bytes: of four records of four numbers at a time, of the three sides of a
-// triangle, of four connections, of a point. That nothing is wrong: what is, and where, the plain passes say.
+// triangle, of four connections, of a point. It tells that nothing is wrong; where something may be, the plain passes judge,
+// and say what it is.
 #pragma once
 
 #include "base/avx2.hpp"
